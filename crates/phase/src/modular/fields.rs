@@ -111,7 +111,7 @@ impl PrimeFields {
         })
     }
 
-    /// A congruent number below 2^32 p.
+    /// A congruent number below 2^32 p: at most (2^32 - 1) (p - 1) + 2^32 - 1.
     #[inline(always)]
     fn fold(&self, t: &mut Sums) {
         for (t, one) in t.iter_mut().zip(&self.ones) {
@@ -121,7 +121,6 @@ impl PrimeFields {
 
     #[inline(always)]
     fn reduce_any(&self, mut t: Sums) -> Residues {
-        self.fold(&mut t);
         self.fold(&mut t);
         self.reduce(&t)
     }
@@ -316,7 +315,7 @@ impl<W: Words> Moduli<W> {
         if pairs.len() <= CHUNK {
             for (tile, sums) in sums.chunks_mut(W::ROWS).enumerate() {
                 let t = self.add_products(self.zero(), pairs, tile * W::ROWS);
-                self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+                self.words.store(self.reduce(self.fold(t)), sums);
             }
             return;
         }
@@ -328,7 +327,7 @@ impl<W: Words> Moduli<W> {
             }
         }
         for (t, sums) in list.into_iter().zip(sums.chunks_mut(W::ROWS)) {
-            self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+            self.words.store(self.reduce(self.fold(t)), sums);
         }
     }
 
@@ -368,7 +367,7 @@ impl<W: Words> Moduli<W> {
                     t = self.accumulate(t, row, self.words.same(x));
                 }
             }
-            self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+            self.words.store(self.reduce(self.fold(t)), sums);
         }
     }
 
@@ -561,6 +560,36 @@ mod tests {
         assert_eq!(fields.reciprocals(&[fields.one(), vanishes]), None);
     }
 
+    struct Columns<'a>(&'a PrimeFields, &'a [Residues], &'a [Residues]);
+
+    impl Kernel for Columns<'_> {
+        type Output = Vec<Residues>;
+
+        #[inline(always)]
+        fn run<W: Words>(self, words: W) -> Vec<Residues> {
+            let Self(fields, matrix, x) = self;
+            let mut sums = vec![ZERO; x.len()];
+            Moduli::new(words, fields).matrix(matrix, matrix.len() / x.len(), x, &mut sums);
+            sums
+        }
+    }
+
+    /// The largest residues in matrices longer than those of small transforms.
+    #[test]
+    fn long_columns_do_not_overflow() {
+        let fields = first(8);
+        let largest = fields.primes().map(|p| p - 1);
+        let square = fields.mul(&largest, &largest);
+        for length in 1..60usize {
+            let matrix = vec![largest; length * length.next_multiple_of(4)];
+            let sum = fields.mul(&square, &small(&fields, length as u32));
+            for fields in fields.on_every_processor() {
+                let sums = fields.vectorised(Columns(&fields, &matrix, &vec![largest; length]));
+                assert_eq!(sums, vec![sum; length], "{fields:?}");
+            }
+        }
+    }
+
     /// All kinds of vectors do the same, also where rows end before a word does.
     #[test]
     fn every_kind_of_vector_agrees() {
@@ -590,8 +619,15 @@ mod tests {
             let combination = one_by_one(&|i, _| terms[i].1);
             let plain = SumOfProducts { fields: &fields, pairs: &pairs, length }.run(Plain);
             assert_eq!(plain, products);
+            // What vanishes is reduced from p itself.
+            let minus: Vec<Residues> = rows[3].iter().map(|a| fields.neg(a)).collect();
+            let vanishes: [(&[Residues], &[Residues]); 2] =
+                [(&rows[3][..length], &rows[5][..length]), (&minus[..length], &rows[5][..length])];
+            let plain = SumOfProducts { fields: &fields, pairs: &vanishes, length }.run(Plain);
+            assert_eq!(plain, vec![ZERO; length]);
             for fields in fields.on_every_processor() {
                 assert_eq!(fields.pointwise(&pairs, length), products, "{length} {fields:?}");
+                assert_eq!(fields.pointwise(&vanishes, length), vec![ZERO; length], "{fields:?}");
                 assert_eq!(fields.combination(&terms), combination, "{length} {fields:?}");
             }
         }
