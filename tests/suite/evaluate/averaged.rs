@@ -1,8 +1,9 @@
 //! Averaged motions against the integrator.
 
 use super::support::{integrated, valued};
-use lindstedt::evaluate::averaged::{Motion, Start};
+use lindstedt::evaluate::averaged::{AveragedMotion, Motion, Start};
 use lindstedt::unstable::equation::Problem;
+use lindstedt::unstable::orbit::{self, Field, Kind, Request, prove};
 use lindstedt::{Exact, Work, unstable::problems};
 
 fn motion(problem: &Problem, order: usize, set: &[(&str, &str)], start: Start) -> Motion {
@@ -141,4 +142,42 @@ fn rates_with_a_delay_against_the_characteristic_root() {
         }
     }
     assert!(known > 30, "{known}");
+}
+
+/// All limit cycles of averaged equations against proved orbits: amplitude of the first harmonic, frequency and Floquet
+/// exponent lie within their estimated errors, at orders with and without a resummation.
+#[test]
+fn summed_cycles_against_proved_orbits() {
+    let cubic = ("x'' + x = eps*(1 - x^4)*x'", &[(true, 1.68)][..]);
+    let two = ("x'' + x = eps*(5 - 20*x^2 + 8*x^4)*x'", &[(true, 1.18), (false, 1.90)][..]);
+    for (equation, expected) in [cubic, two] {
+        let case = lindstedt::Oscillator::parse(equation).unwrap().set("eps", "1/20").unwrap();
+        let values = [("eps".to_owned(), rug::Rational::from((1, 20)))].into();
+        let field = Field::new(&case.problem().equation, "eps", &values).unwrap();
+        for (k, (stable, amplitude)) in expected.iter().enumerate() {
+            let (cosines, sines) = (vec![0.0, *amplitude], vec![0.0; 2]);
+            let start = orbit::Start { frequency: 1.0, cosines, sines };
+            let proof = prove(&field, &Kind::LimitCycle, &start, &Request::default()).unwrap();
+            let (cosine, sine) = proof.harmonic(1);
+            let first = cosine.midpoint().to_f64().hypot(sine.midpoint().to_f64());
+            let [frequency, exponent] =
+                [&proof.frequency, &proof.exponent].map(|ball| ball.midpoint().to_f64());
+            for order in [4, 8, 14] {
+                let question = AveragedMotion { order: Some(order), ..AveragedMotion::default() };
+                let found = case.averaged_motion(&question, &work()).unwrap().value.cycles.unwrap();
+                assert_eq!(found.len(), expected.len());
+                let cycle = &found[k];
+                assert_eq!(cycle.stable, Some(*stable));
+                let numbers = [&cycle.amplitude, &cycle.frequency, &cycle.floquet_exponent];
+                for (number, truth) in numbers.into_iter().zip([first, frequency, exponent]) {
+                    let number = number.as_ref().unwrap();
+                    let error = number.error.as_ref().unwrap().parse::<f64>().unwrap();
+                    let gap = (number.decimal.parse::<f64>().unwrap() - truth).abs();
+                    assert!(gap <= error + 1e-14, "{equation} {order}: {number}, {truth}");
+                    let limit = [1e-2, 1e-4, 1e-6][(order - 4).div_ceil(5)];
+                    assert!(error < limit, "{equation} {order}: {number}");
+                }
+            }
+        }
+    }
 }

@@ -46,6 +46,9 @@ pub struct Cycle {
     /// m, monic, from the constant on: m(r) = 0. Of degree 1 where r is rational.
     #[serde(serialize_with = "as_text")]
     pub polynomial: Vec<Rational>,
+    /// An interval with r and no other root of m.
+    #[serde(skip)]
+    root: [Rational; 2],
     /// a_0, the amplitude at order zero.
     pub amplitude: Number,
     /// Orders 0, 1, ... of a^2.
@@ -112,6 +115,12 @@ impl Cycle {
         print(&self.polynomial, style)
     }
 
+    /// A coefficient with so many bits.
+    #[must_use]
+    pub fn enclosed(&self, coefficient: &Algebraic, balls: Balls) -> Ball {
+        value(&coefficient.element, &enclosed(&self.polynomial, &self.root, balls), balls)
+    }
+
     /// Whether a_0^2 is rational: then all coefficients are.
     #[must_use]
     pub fn is_rational(&self) -> bool {
@@ -173,13 +182,12 @@ pub(super) fn cycles(
     if simple.len() > 1 {
         found.extend(rates.at_roots(simple, digits)?);
     }
-    found.sort_by(|(a, _), (b, _)| a[0].cmp(&b[0]));
+    found.sort_by(|a, b| a.root[0].cmp(&b.root[0]));
     let mut degenerate = Vec::new();
     for root in positive_roots(&multiple) {
         degenerate.push(root_of_root(&multiple, &root, digits)?);
     }
-    let cycles = found.into_iter().map(|(_, cycle)| cycle).collect();
-    Ok(Some(Cycles { leading_order, cycles, degenerate }))
+    Ok(Some(Cycles { leading_order, cycles: found, degenerate }))
 }
 
 /// c_0 + c_1 r + ...
@@ -209,12 +217,8 @@ fn root_of_root(
 }
 
 impl Rates {
-    /// One cycle for every positive root of a factor, with the interval of the root.
-    fn at_roots(
-        &self,
-        modulus: Vec<Rational>,
-        digits: usize,
-    ) -> Result<Vec<([Rational; 2], Cycle)>, Error> {
+    /// One cycle for every positive root of a factor.
+    fn at_roots(&self, modulus: Vec<Rational>, digits: usize) -> Result<Vec<Cycle>, Error> {
         let roots = positive_roots(&modulus);
         let field = Residues::new(modulus);
         let Some([square, exponent, frequency]) = self.series(&field).filter(|_| !roots.is_empty())
@@ -234,15 +238,15 @@ impl Rates {
                 |list: &[Vec<Rational>]| list.iter().map(number).collect::<Result<Vec<_>, Error>>();
             let exponent = numbers(&exponent)?;
             let leading = &exponent[self.leading_order].number.decimal;
-            let cycle = Cycle {
+            list.push(Cycle {
                 polynomial: modulus.to_vec(),
                 amplitude: root_of_root(modulus, &root, digits)?,
                 squared_amplitude: numbers(&square)?,
                 stable: leading.starts_with('-'),
                 frequency: numbers(&frequency)?,
                 exponent,
-            };
-            list.push((root, cycle));
+                root,
+            });
         }
         Ok(list)
     }

@@ -1,6 +1,7 @@
 //! The averaged expansion with a value for every parameter, as floats.
 
 use super::AveragingSettings;
+use super::cycles::{Cycles, cycles};
 use super::task::{Over, Task};
 use super::values::constant;
 use crate::error::DerivationError as Error;
@@ -42,6 +43,8 @@ pub struct Numbers {
     pub solution: Vec<Vec<Harmonic>>,
     /// The delays.
     pub delays: Vec<Float>,
+    /// The limit cycles, exact; nothing where the coefficients are irrational or no rate depends on a.
+    pub cycles: Option<Cycles>,
 }
 
 /// Coefficients with `bits` bits relative, or as far as their enclosures allow; those that may
@@ -61,7 +64,9 @@ pub fn numbers(
         return Err(Error::Unset { problem: problem.name.to_string(), name: name.clone() });
     }
     if let Some(over) = task.over_rationals(observer)? {
-        return collect(&task, &over, bits, &|q| Some(Float::with_val(bits, q)));
+        let found = collect(&task, &over, bits, &|q| Some(Float::with_val(bits, q)))?;
+        let cycles = cycles(&over.frequency, &over.expansion, settings.digits)?;
+        return Ok(Numbers { cycles, ..found });
     }
     let order = u32::try_from(settings.order).unwrap_or(u32::MAX / 32);
     let balls = Balls::new(bits.saturating_add(64).saturating_add(order.saturating_mul(8)));
@@ -114,5 +119,6 @@ fn collect<K: RationalAlgebra>(
         phase_rate: list(&over.expansion.phase_rate).ok_or_else(failed)?,
         solution: solution.collect::<Option<_>>().ok_or_else(failed)?,
         delays,
+        cycles: None,
     })
 }

@@ -109,7 +109,9 @@ pub(super) fn derived(
         flow.system.squares = middles(&modes.squares);
         flow.system.shapes = Some(modes.shapes.iter().map(|row| middles(row)).collect());
     }
-    flow.enclosed = Some(Enclosed { radius: radius.get(), residual, digits });
+    let mut coefficients = run.found.flow.iter().flatten().flat_map(|f| parts(&run.algebra, f));
+    let leaves_out = coefficients.any(|ball| ball.contains_zero() && ball.abs_upper() > 0);
+    flow.enclosed = Some(Enclosed { radius: radius.get(), residual, digits, leaves_out });
     Ok(flow)
 }
 

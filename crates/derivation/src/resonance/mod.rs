@@ -112,6 +112,8 @@ pub struct Enclosed {
     pub residual: f64,
     /// Digits that are printed.
     pub digits: usize,
+    /// Whether coefficients of the flow are left out because they cannot be told from zero.
+    pub leaves_out: bool,
 }
 
 impl SlowFlow {

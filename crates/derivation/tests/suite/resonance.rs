@@ -480,6 +480,20 @@ fn energy_is_conserved() {
     let other = flow("x'' + x + eps*x*y; y'' + 4*y - eps*x^2", 1, &[]);
     assert!(other.energy.is_empty());
     assert!(flow("x'' + x + eps*x^2*x'", 1, &[]).energy.is_empty());
+    // Frequencies 1 and sqrt 2, V = eps x^2 y^2: <V> and the velocities, whose frequencies move by 2 |z_2|^2 and
+    // |z_1|^2 sqrt 2, add 4 |z_1 z_2|^2 each.
+    let enclosed = flow("x'' + x + 2*eps*x*y^2; y'' + 2*y + 2*eps*x^2*y", 1, &[]);
+    for (n, expected) in
+        [&["2 z1 zbar1", "4 z2 zbar2"][..], &["12 z1 zbar1 z2 zbar2"]].iter().enumerate()
+    {
+        let energy = named(&enclosed, &enclosed.energy[n]);
+        let expected = by_hand(expected);
+        assert_eq!(energy.len(), expected.len());
+        for (powers, [re, _]) in expected {
+            let gap = (energy[&powers][0].clone() - re).to_f64().abs();
+            assert!(gap <= enclosed.enclosed.unwrap().radius, "{gap:e}");
+        }
+    }
     // Modes of coupled masses, and enclosed ones.
     assert_eq!(flow("2*x'' + 5*x - 3*y + eps*x^3; 2*y'' + 5*y - 3*x", 2, &[]).energy.len(), 3);
     assert_eq!(flow("x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x", 2, &[]).energy.len(), 3);

@@ -50,6 +50,7 @@ impl Serialize for Motion {
         map.serialize_entry("term_ratio", &self.ratio)?;
         map.serialize_entry("integration_error", &self.integration_error)?;
         map.serialize_entry("verdict", &self.verdict())?;
+        map.serialize_entry("limit_cycles", &self.cycles)?;
         map.serialize_entry("solution", &solution)?;
         map.end()
     }

@@ -9,6 +9,7 @@
 //! series is asymptotic: the estimate means something only while its terms decrease, and is
 //! withheld otherwise.
 
+mod cycles;
 mod flow;
 mod json;
 mod rest;
@@ -19,6 +20,7 @@ use crate::digits::bits_for;
 use crate::error::EvaluationError as Error;
 use crate::few::plain;
 use crate::setting::{check_names, small_value};
+pub use cycles::SummedCycle;
 use flow::Flow;
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::averaging::numbers::{Numbers, numbers};
@@ -86,6 +88,9 @@ pub struct Motion {
     pub has_wall: bool,
     /// The motion at the times asked for, those that are reached.
     pub moments: Option<Vec<Moment>>,
+    /// The limit cycles whose amplitude does not vanish with the small parameter, by increasing amplitude; nothing
+    /// where the coefficients are irrational, no rate depends on a, or a wall is near.
+    pub cycles: Option<Vec<SummedCycle>>,
     full: Truncated,
     rest: Rest,
     /// What the start may be off by, where it was computed from x and x'.
@@ -165,8 +170,10 @@ impl Motion {
         let averaging =
             AveragingSettings { order, parameters, digits, ..AveragingSettings::default() };
         let found = numbers(problem, &averaging, bits, &mut |progress| work.goes_on(progress))?;
-        let small = Float::with_val(bits, small.ball(Balls::new(bits)).midpoint());
-        Self::of_numbers(problem, (start, digits), &found, &small, at)
+        let float = Float::with_val(bits, small.ball(Balls::new(bits)).midpoint());
+        let cycles = found.cycles.as_ref().filter(|_| problem.impact.is_none());
+        let cycles = cycles.map(|found| cycles::summed(found, &small, digits, &work.stop));
+        Ok(Self { cycles, ..Self::of_numbers(problem, (start, digits), &found, &float, at)? })
     }
 
     fn of_numbers(
@@ -216,6 +223,7 @@ impl Motion {
             is_delayed: !found.delays.is_empty(),
             has_wall: problem.impact.is_some(),
             moments: None,
+            cycles: None,
             full,
             rest,
             start_error,

@@ -33,7 +33,7 @@ pub(super) struct Rest {
 const BELOW: u32 = 4;
 
 /// Estimates of the rates are so many times the geometric rest.
-const SAFETY: f64 = 4.0;
+pub(super) const SAFETY: f64 = 4.0;
 
 /// |sum c a^n|.
 fn size(terms: &Terms, a: &Float) -> f64 {
@@ -55,7 +55,7 @@ pub(super) fn looked_at(passed: impl Iterator<Item = Float>) -> Vec<Float> {
 }
 
 /// The last two of the sizes t_1, t_2, ... that do not vanish, with their n.
-fn last_two(sizes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
+pub(super) fn last_two(sizes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
     let orders = sizes.iter().copied().enumerate().skip(1).rev();
     orders.filter(|(_, size)| *size != 0.0).take(2)
 }
@@ -65,7 +65,7 @@ fn largest(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
-fn power(q: f64, n: usize) -> f64 {
+pub(super) fn power(q: f64, n: usize) -> f64 {
     q.powi(i32::try_from(n).unwrap_or(i32::MAX))
 }
 

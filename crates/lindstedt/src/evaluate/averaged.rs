@@ -5,7 +5,7 @@ use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 use lindstedt_equation::Condition;
-pub use lindstedt_evaluation::averaged::{Moment, Motion, Quantity, Start};
+pub use lindstedt_evaluation::averaged::{Moment, Motion, Quantity, Start, SummedCycle};
 use rug::Rational;
 use std::time::Instant;
 

@@ -126,7 +126,8 @@ impl Oscillator {
             value.leads_to = Some(subject.destination(from, &value)?);
         }
         let mut remarks = self.remarks().to_vec();
-        let undecided = value.states.iter().filter(|states| !states.count_proved).count();
+        let undecided =
+            value.states.iter().filter(|states| states.undecided + states.at_edge > 0).count();
         if undecided > 0 {
             let place = if value.parameter.is_some() { "at a value searched " } else { "" };
             remarks.push(Remark(format!(

@@ -88,7 +88,7 @@ impl Subject<'_> {
         Some(States {
             value: sample.and_then(|value| self.shown_sample(value)),
             count: list.len(),
-            count_proved: found.is_proved(),
+            count_proved: found.is_proved() && self.is_whole(),
             undecided: found.undecided.len(),
             at_edge: found.at_edge.len(),
             boxes: found.boxes,

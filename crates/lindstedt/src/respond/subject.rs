@@ -142,11 +142,22 @@ impl<'a> Subject<'a> {
 
     /// What is said of coefficients that are enclosed.
     pub(super) fn enclosed(&self) -> Option<Remark> {
-        let radius = self.slow.enclosed.as_ref()?.radius;
+        let enclosed = self.slow.enclosed.as_ref()?;
+        let left = match enclosed.leaves_out {
+            true => {
+                ", but for those that cannot be told from zero, which are left out: their number is estimated"
+            }
+            false => "",
+        };
+        let radius = enclosed.radius;
         Some(Remark(format!(
-            "a frequency is irrational: the states are those of all coefficients within {radius:.1e}, but for those that \
-             cannot be told from zero, which are left out"
+            "a frequency is irrational: the states are those of all coefficients within {radius:.1e}{left}"
         )))
+    }
+
+    /// Whether what is found of the flow is found of the whole one.
+    pub(super) fn is_whole(&self) -> bool {
+        self.slow.enclosed.as_ref().is_none_or(|enclosed| !enclosed.leaves_out)
     }
 
     pub(super) fn tier(&self) -> &'static str {

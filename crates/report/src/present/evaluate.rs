@@ -3,7 +3,7 @@
 use super::Present;
 use crate::figure::{Axis, Mark, colours};
 use crate::{Block, Document, Figure, Formula, Table, Text};
-use lindstedt::evaluate::averaged::{Moment, Motion, Quantity};
+use lindstedt::evaluate::averaged::{Moment, Motion, Quantity, SummedCycle};
 use lindstedt::evaluate::{
     Displacement, Displacements, Evaluation, ExpansionCode, SolutionCode, method_name,
 };
@@ -167,7 +167,7 @@ impl Present for Answer<Motion> {
             lines.push((name("frequency ", "psi'", "\\psi'", ""), number(frequency)));
         }
         lines.push(("verdict".into(), motion.verdict().into()));
-        let page = Document::titled(title(&self.header)).lines(lines);
+        let page = cycles(Document::titled(title(&self.header)).lines(lines), motion);
         let psi = Text::from(Formula::new("psi", "\\psi"));
         let table = Table::new(["t".into(), "a".into(), psi, Text::words("x")]);
         page.table(self.moments().iter().map(moment).fold(table, Table::row))
@@ -197,6 +197,29 @@ impl Present for Answer<Motion> {
         };
         Some(self.moments().iter().map(row).fold(head, Table::row))
     }
+}
+
+/// The limit cycles as numbers.
+fn cycles(page: Document, motion: &Motion) -> Document {
+    let found = motion.cycles.as_deref().unwrap_or_default();
+    if found.is_empty() {
+        return page;
+    }
+    let shown = |number: &Option<Number>| {
+        let none = "not one digit";
+        Text::words(with_error(number.as_ref(), "estimated", "no estimate", none))
+    };
+    let row = |cycle: &SummedCycle| {
+        let stable = match cycle.stable {
+            Some(true) => "stable",
+            Some(false) => "unstable",
+            None => "undecided",
+        };
+        let numbers = [&cycle.amplitude, &cycle.frequency, &cycle.floquet_exponent].map(shown);
+        numbers.into_iter().chain([Text::words(stable)]).collect::<Vec<_>>()
+    };
+    let head = ["a of a limit cycle", "frequency", "Floquet exponent", "stability"];
+    page.table(found.iter().map(row).fold(Table::new(head), Table::row))
 }
 
 trait Moments {

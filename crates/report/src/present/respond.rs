@@ -78,7 +78,11 @@ fn states(value: &Response, states: &States) -> Table {
 }
 
 fn proof(states: &States) -> String {
-    let proof = if states.count_proved { "exactly so many, proved" } else { "number not decided" };
+    let proof = match (states.count_proved, states.undecided + states.at_edge) {
+        (true, _) => "exactly so many, proved",
+        (false, 0) => "estimated: coefficients that cannot be told from zero are left out",
+        (false, _) => "number not decided",
+    };
     let open = match states.undecided {
         0 => String::new(),
         n => format!("; {n} parts of the box are undecided"),
