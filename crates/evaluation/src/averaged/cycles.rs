@@ -8,6 +8,7 @@
 
 use super::rest::{SAFETY, last_two, power};
 use crate::digits::bits_for;
+use crate::source::gcd;
 use crate::source::remembered;
 use lindstedt_algebra::Stop;
 use lindstedt_derivation::averaging::{Algebraic, Cycle, Cycles};
@@ -34,10 +35,6 @@ pub struct SummedCycle {
 
 /// Attempts at enclosing a coefficient; one that may still vanish then is taken to.
 const DOUBLINGS: u32 = 4;
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
-}
 
 /// eps^first (c_0 + c_1 eps^step + ...) along a cycle.
 struct Along<'a> {
