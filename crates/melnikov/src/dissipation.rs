@@ -180,7 +180,6 @@ pub fn quadrature_dissipation(
             cuts.extend(crossing(&chart, &chart.ends.1, &speed, work));
         }
     }
-    cuts.sort_by(Float::total_cmp);
     let integrand = |u: &Float| {
         let speed = (chart.speed)(u);
         let mut sum = Float::new(work);
@@ -190,17 +189,7 @@ pub fn quadrature_dissipation(
         }
         Some(sum * (chart.slope)(u))
     };
-    let mut total = Estimate::zero(bits);
-    for pair in cuts.windows(2) {
-        if let [a, b] = pair
-            && a < b
-        {
-            let part = tanh_sinh(bits, a, b, integrand)?;
-            total.value += part.value;
-            total.error += part.error;
-        }
-    }
-    Ok(total)
+    in_pieces(bits, &mut cuts, integrand)
 }
 
 /// D = int v0 T(v0 - v*) dt in the scaled time z for a described orbit: cut where sigma v0 - v*
@@ -230,7 +219,6 @@ fn in_time(
         let crossings = level_crossings(balls, &shape, &level).ok_or_else(undecided)?;
         cuts.extend(crossings.iter().map(|z| z.midpoint().clone()));
     }
-    cuts.sort_by(Float::total_cmp);
     let sigma = branch.sign();
     let integrand = |z: &Float| {
         let z = balls.from_parts(z, &Float::new(53));
@@ -238,6 +226,16 @@ fn in_time(
         let sliding = Float::with_val(work, &shape * scale.midpoint()) - belt.midpoint();
         Some(law(&sliding) * shape * amplitude.midpoint())
     };
+    in_pieces(bits, &mut cuts, integrand)
+}
+
+/// The integral between the outermost of the cuts, piece by piece.
+fn in_pieces(
+    bits: u32,
+    cuts: &mut [Float],
+    integrand: impl Fn(&Float) -> Option<Float> + Copy,
+) -> Result<Estimate, MelnikovError> {
+    cuts.sort_by(Float::total_cmp);
     let mut total = Estimate::zero(bits);
     for pair in cuts.windows(2) {
         if let [a, b] = pair

@@ -5,6 +5,7 @@ mod agreement;
 mod collocation;
 mod doubles;
 mod extremes;
+mod growth;
 mod oracles;
 mod support;
 mod truth;

@@ -1,6 +1,9 @@
 //! Reading reference numbers; comparison to a number of digits.
 
-use lindstedt_impact::parameters::{Branch, ExactParameters};
+use lindstedt_impact::flight::{Clearance, clearance};
+use lindstedt_impact::orbit::orbit;
+use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
+use lindstedt_impact::prediction::uncontrolled_map;
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
 use lindstedt_number::complex::Complex;
@@ -130,4 +133,50 @@ impl Random {
 #[allow(dead_code)]
 pub fn show(x: &Float) -> f64 {
     x.to_f64()
+}
+
+/// Orbits 2, 3 and 5 of the reference numbers, without gains.
+pub fn orbit_number(n: usize) -> ExactParameters {
+    let (omega, periods, restitution, wall, damping) = match n {
+        2 => ("2.6", 2, "0.4", "0.2", "0.05"),
+        3 => ("3.3", 1, "0.6", "-0.2", "0.2"),
+        _ => ("3.3", 2, "0.8", "0", "0.05"),
+    };
+    ExactParameters {
+        alpha: exact("1"),
+        omega: exact(omega),
+        periods,
+        restitution: exact(restitution),
+        wall: exact(wall),
+        damping: exact(damping),
+        force: exact("1"),
+        displacement_gain: exact("0"),
+        velocity_gain: exact("0"),
+        branch: Branch::Plus,
+    }
+}
+
+/// An orbit that does not penetrate, its largest multiplier between 0.2 and 3, without gains.
+pub fn random_orbit(random: &mut Random) -> Parameters<f64> {
+    loop {
+        let p = Parameters {
+            alpha: 1.0,
+            omega: random.between(0.7, 4.5),
+            periods: random.between(1.0, 3.999) as u32,
+            restitution: random.between(0.3, 0.95),
+            wall: random.between(-0.3, 0.3),
+            damping: random.between(0.02, 0.2),
+            force: 1.0,
+            displacement_gain: 0.0,
+            velocity_gain: 0.0,
+            branch: Branch::Plus,
+        };
+        let Ok(found) = orbit(&p) else { continue };
+        let free = |margin: &Clearance<f64>| margin.margin < 0.0;
+        let clear = clearance(&p, &found).unwrap().as_ref().is_none_or(free);
+        let leading = uncontrolled_map(&p, &found).spectral_radius();
+        if clear && (0.2..3.0).contains(&leading) {
+            return p;
+        }
+    }
 }

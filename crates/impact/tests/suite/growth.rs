@@ -1,0 +1,50 @@
+//! The growth of the piecewise linear return map, and its error.
+
+use crate::support::{Random, exact, orbit_number, random_orbit};
+use lindstedt_impact::characteristic::{Characteristic, Kick};
+use lindstedt_impact::kick::piecewise_growth;
+use lindstedt_impact::orbit::orbit;
+use lindstedt_impact::parameters::ExactParameters;
+use lindstedt_impact::zeros::multipliers;
+use lindstedt_number::real::Real;
+
+/// For B = 0 the return map is linear, and its growth the modulus of the largest multiplier, which zeros
+/// of G enclose: the stated error covers the difference, and in the median is not 20 times as large.
+#[test]
+fn the_error_of_the_growth_covers_the_largest_multiplier() {
+    let mut ratios = Vec::new();
+    for (n, k) in [2, 3, 5].into_iter().flat_map(|n| (-10..11).map(move |k| (n, k))) {
+        let gain = exact(&format!("{}", 0.013 * f64::from(k)));
+        let p = ExactParameters { displacement_gain: gain, ..orbit_number(n) };
+        let (nearest, balls) = (p.nearest(), p.certified(160));
+        let g = Characteristic::new(&balls, &orbit(&balls).unwrap(), Kick::None);
+        let truth = multipliers(&g, 0.2).unwrap().values[0].modulus().to_f64();
+        let found = piecewise_growth(&nearest, &orbit(&nearest).unwrap(), 200).unwrap();
+        let ratio = found.error / (found.rate - truth).abs();
+        assert!(ratio > 1.0, "O{n} A {k}: {found:?} {truth}");
+        ratios.push(ratio);
+    }
+    ratios.sort_by(f64::total_cmp);
+    assert!(ratios[ratios.len() / 2] < 20.0, "{ratios:?}");
+}
+
+/// For B other than 0 the map is linear in two half planes, and a run of sixteen times the length is the truth.
+#[test]
+fn the_error_of_the_growth_covers_a_long_run() {
+    let mut random = Random(77);
+    let (mut beyond, mut count) = (0, 0);
+    while count < 100 {
+        let mut p = random_orbit(&mut random);
+        p.displacement_gain = random.between(-0.3, 0.3);
+        p.velocity_gain = random.between(-0.3, 0.3);
+        let Ok(found) = orbit(&p) else { continue };
+        let runs = [400, 6400].map(|flights| piecewise_growth(&p, &found, flights));
+        let [Ok(short), Ok(long)] = runs else { continue };
+        let ratio = (short.rate - long.rate).abs() / (short.error + long.error);
+        assert!(ratio < 4.0, "{p:?}: {short:?} {long:?}");
+        beyond += usize::from(ratio > 1.0);
+        count += 1;
+    }
+    // Estimated: the run of one in thirty is shorter than a transient.
+    assert!(beyond <= 3, "{beyond} of {count}");
+}
