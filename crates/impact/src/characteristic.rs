@@ -104,11 +104,6 @@ impl<S: Real> Characteristic<S> {
     pub(crate) fn goes_on(&self) -> bool {
         !self.stop.asked()
     }
-    /// Whether G is a quadratic polynomial (A = B = 0), with two zeros and no more.
-    pub fn is_quadratic(&self) -> bool {
-        let zero = |x: &S| x.sign().is_some_and(|sign| sign.is_eq());
-        zero(&self.displacement_gain) && zero(&self.velocity_gain)
-    }
     /// T.
     pub fn period(&self) -> &S {
         &self.period

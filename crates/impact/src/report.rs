@@ -84,22 +84,15 @@ pub struct PredictionReport<S> {
 /// The truth about the delayed system.
 #[derive(Clone, Debug)]
 pub struct ExactReport<S> {
-    /// By the zeros of G in the unit disc: exact for B = 0.
+    /// By the zeros of G in the unit disc for B = 0: exact; else by the growth of the piecewise linear
+    /// return map, neutral where that is not told from 1.
     pub verdict: Verdict,
-    /// Their number; `None` if undecided.
+    /// The number of zeros of G in the unit disc; `None` if undecided.
     pub zeros_in_unit_disc: Option<u32>,
     /// Floquet multipliers 1/w, or why they could not be enclosed.
     pub multipliers: Result<Multipliers<S>, ImpactError>,
     /// Growth of the piecewise linear return map, for B != 0: it has no classical multipliers.
     pub growth: Option<Growth>,
-}
-
-impl<S> ExactReport<S> {
-    /// The definite verdict: of the piecewise linear return map for B != 0 where it was measured,
-    /// of G otherwise.
-    pub fn definite(&self) -> Verdict {
-        self.growth.as_ref().map_or(self.verdict, Growth::verdict)
-    }
 }
 
 /// Everything about one point.
@@ -225,16 +218,14 @@ fn exact_report<S: Real>(
     stop: &Stop,
 ) -> ExactReport<S> {
     let g = Characteristic::new(parameters, orbit, request.kick).watched(stop);
-    let (verdict, zeros_in_unit_disc) = exact_verdict(&g);
-    let kicked = !parameters.velocity_gain.sign().is_some_and(|sign| sign.is_eq());
-    let growth =
-        kicked.then(|| watched_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS, stop));
-    ExactReport {
-        verdict,
-        zeros_in_unit_disc,
-        multipliers: multipliers(&g, request.least_modulus),
-        growth: growth.and_then(Result::ok),
+    let (mut verdict, zeros_in_unit_disc) = exact_verdict(&g);
+    let mut growth = None;
+    if !parameters.velocity_gain.sign().is_some_and(|sign| sign.is_eq()) {
+        growth = watched_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS, stop).ok();
+        verdict = growth.as_ref().map_or(Verdict::Neutral, Growth::verdict);
     }
+    let multipliers = multipliers(&g, request.least_modulus);
+    ExactReport { verdict, zeros_in_unit_disc, multipliers, growth }
 }
 
 /// The report with every number to `digits` digits where that is possible.

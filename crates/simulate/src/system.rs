@@ -267,10 +267,4 @@ impl<R: Real> System<R> {
     pub fn switches(&self) -> usize {
         self.switches.len()
     }
-
-    /// The number of recurrences per level, from the second on.
-    #[must_use]
-    pub fn operations(&self) -> usize {
-        self.tape.curved.len()
-    }
 }

@@ -3,8 +3,10 @@
 use crate::support::{Random, exact, orbit_number, random_orbit};
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::kick::piecewise_growth;
+use lindstedt_impact::map::Verdict;
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::ExactParameters;
+use lindstedt_impact::report::{Request, stability};
 use lindstedt_impact::zeros::multipliers;
 use lindstedt_number::real::Real;
 
@@ -47,4 +49,35 @@ fn the_error_of_the_growth_covers_a_long_run() {
     }
     // Estimated: the run of one in thirty is shorter than a transient.
     assert!(beyond <= 3, "{beyond} of {count}");
+}
+
+/// Where the growth is not told from 1 the zeros of G, which are not those of the map for B other than 0, decide nothing.
+#[test]
+fn a_growth_near_one_is_undecided() {
+    let at = |gain: f64| ExactParameters {
+        displacement_gain: exact("0.05"),
+        velocity_gain: exact(&format!("{gain:.12}")),
+        ..orbit_number(2)
+    };
+    let report =
+        |gain: f64| stability(&at(gain).nearest(), &Request::default()).unwrap().exact.unwrap();
+    let (mut inside, mut outside) = (-0.2, 0.0);
+    for gain in (-9..40).map(|n| 0.021 * f64::from(n)) {
+        if report(gain).growth.unwrap().rate > 1.0 {
+            outside = gain;
+            break;
+        }
+        inside = gain;
+    }
+    let near = loop {
+        let middle = 0.5 * (inside + outside);
+        let found = report(middle);
+        let rate = found.growth.unwrap().rate;
+        if (rate - 1.0).abs() < 1e-4 {
+            break found;
+        }
+        if rate > 1.0 { outside = middle } else { inside = middle }
+    };
+    assert_eq!(near.verdict, Verdict::Neutral);
+    assert!(near.zeros_in_unit_disc.is_some());
 }

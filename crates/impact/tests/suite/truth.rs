@@ -52,7 +52,7 @@ fn a_certified_report_without_a_predicted_orbit() {
     let report = certified_stability(&p, &Request::default(), 30).unwrap();
     assert!(matches!(report.kbm, Err(ImpactError::BeyondFold { .. })));
     let exact = report.exact.unwrap();
-    assert_eq!(exact.definite(), Verdict::Unstable);
+    assert_eq!(exact.verdict, Verdict::Unstable);
     // Settled at the first precision: 30 digits and guard bits.
     assert!(exact.multipliers.unwrap().values[0].re.precision() < 256);
 }

@@ -14,7 +14,7 @@ use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Work};
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::characteristic::Kick;
-use lindstedt_impact::parameters::{Branch, ExactParameters};
+use lindstedt_impact::parameters::Branch;
 use lindstedt_impact::prediction::Variant;
 use lindstedt_impact::report::{certified_stability_watched, stability_watched};
 use lindstedt_number::as_map;
@@ -154,19 +154,6 @@ pub struct NoOrbit {
 }
 
 impl Oscillator {
-    /// The canonical parameters of an impact oscillator, and those of the problem as they stand.
-    ///
-    /// # Errors
-    /// As [`Oscillator::stability`].
-    pub fn impact_parameters(
-        &self,
-        branch: Option<Branch>,
-    ) -> Result<(ExactParameters, Vec<(String, String)>), Error> {
-        let question = Stability { branch, ..Stability::default() };
-        let subject = Subject::new(self, &question)?;
-        Ok((subject.found.parameters, subject.at))
-    }
-
     /// The impact orbit, its predicted and its true stability, and charts of both.
     ///
     /// Digits are those of `work`; charts are computed in doubles. Cost: milliseconds for a point,

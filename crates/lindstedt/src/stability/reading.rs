@@ -10,7 +10,6 @@ use lindstedt_impact::ImpactError;
 use lindstedt_impact::aware::AwarePrediction;
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::equivalent::EquivalentOrbit;
-use lindstedt_impact::kick::Growth;
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::report::{ExactReport, OrbitReport, StabilityReport};
 use lindstedt_impact::{Radius, divergence};
@@ -21,6 +20,7 @@ use lindstedt_number::real::Real;
 const ROOTS_OF_G: &str = "zeros of G, which approximates the return map; their digits are those of \
                           the zeros, not of multipliers of the map";
 const PENETRATES: &str = "no orbit: the flight passes through the wall";
+const GROWTH_NEAR_ONE: &str = "undecided: the growth per impact is not told from 1";
 
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
@@ -120,13 +120,12 @@ impl<S: Real> Writer<'_, S> {
 
     fn truth(&self, subject: &Subject<'_>, found: &ExactReport<S>, exists: Option<bool>) -> Truth {
         let growth = found.growth.as_ref();
-        let verdict = match growth.map(Growth::verdict) {
-            Some(Verdict::Neutral) | None => found.verdict,
-            Some(decided) => decided,
-        };
         // The multipliers of a flight through the wall are those of a system without wall on the way.
         let (stable, words) = match exists {
-            Some(true) => (stable(verdict), word(verdict)),
+            Some(true) => match (found.verdict, growth) {
+                (Verdict::Neutral, Some(_)) => (None, GROWTH_NEAR_ONE),
+                (verdict, _) => (stable(verdict), word(verdict)),
+            },
             Some(false) => (None, PENETRATES),
             None => (None, "undecided: the flight touches the wall"),
         };
