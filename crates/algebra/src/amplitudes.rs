@@ -33,6 +33,9 @@ pub trait AmplitudeAlgebra: ForcedAlgebra + FunctionAlgebra<Constants = Self> + 
         let pairs: Vec<_> = pairs.iter().zip(&slopes).map(|((f, _), slope)| (*f, slope)).collect();
         self.twice_real(&self.sum_of_products(&pairs))
     }
+    /// c_j, d_j and r without amplitudes, with f = sum_j (c_j z_j + d_j zbar_j) + r over the unknowns that have one;
+    /// nothing for other f.
+    fn linear_parts(&self, f: &Self::Element) -> Option<LinearParts<Self::Element>>;
     /// df/deta_l.
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element;
     /// D_0 f.
@@ -80,6 +83,9 @@ impl<E> LinearPart<E> {
         ring.is_zero(&self.damping) && self.delayed.iter().all(|(b, c)| vanish([b, c]))
     }
 }
+
+/// The result of [`AmplitudeAlgebra::linear_parts`]: c_j and d_j, and r.
+pub type LinearParts<E> = (Vec<[E; 2]>, E);
 
 /// The result of [`AmplitudeAlgebra::split`].
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ mod ring;
 mod stop;
 mod stopping;
 
-pub use amplitudes::{AmplitudeAlgebra, LinearPart, Split};
+pub use amplitudes::{AmplitudeAlgebra, LinearPart, LinearParts, Split};
 pub use clock::{ClockAlgebra, StillAndClock};
 pub use phase::{
     Elementary, ForcedAlgebra, FunctionAlgebra, NEAR_MISS, PhaseAlgebra, PhaseError, Resolution,

@@ -10,7 +10,7 @@
 //! sin^2 + cos^2 = 1 because the reduced monomials in the other symbols are a basis.
 
 use crate::polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};
-use crate::print::{Print, Style, Term, parenthesize, power};
+use crate::print::{Print, Style, Term, parenthesize, power, print_sum};
 use crate::sparse::{Monomial, Sparse};
 use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use rug::{Integer, Rational};
@@ -354,6 +354,13 @@ impl Print for ParameterField {
             power(&base, -i64::from(exponent), style)
         };
         vec![self.ring.factor(&a.numerator, style).times(a.denominator.iter().map(factor))]
+    }
+
+    fn print(&self, a: &ParameterFraction, style: Style) -> String {
+        match a.denominator.is_empty() {
+            true => self.ring.print(&a.numerator, style),
+            false => print_sum(&self.print_terms(a, style), style),
+        }
     }
 }
 

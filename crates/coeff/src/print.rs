@@ -77,26 +77,30 @@ impl Term {
     }
 }
 
-/// Writes factors side by side. In LaTeX a named function brings its own space, and a logarithm that is
-/// not the last factor is put into parentheses, since \ln 2\cos t would read as ln(2 cos t).
+/// Writes factors side by side.
 fn write_product<'a>(factors: impl Iterator<Item = &'a str>, style: Style, line: &mut String) {
     let mut factors = factors.peekable();
-    let mut first = true;
+    let mut behind = false;
     while let Some(factor) = factors.next() {
-        let latex = style == Style::Latex;
-        let is_log = latex && factor.starts_with(r"\ln");
-        let is_function =
-            latex && [r"\cos", r"\sin", r"\sec"].iter().any(|f| factor.starts_with(f));
-        if is_log && factors.peek().is_some() {
-            line.push_str(&parenthesize(factor, style));
-        } else {
-            if !first && !is_log && !is_function {
-                line.push_str(if latex { r"\," } else { "*" });
-            }
-            line.push_str(factor);
-        }
-        first = false;
+        write_factor(factor, [behind, factors.peek().is_some()], style, line);
+        behind = true;
     }
+}
+
+/// Writes a factor behind another one, before another one. In LaTeX a named function brings its own space, and a
+/// logarithm that is not the last factor is put into parentheses, since \ln 2\cos t would read as ln(2 cos t).
+fn write_factor(factor: &str, [behind, followed]: [bool; 2], style: Style, line: &mut String) {
+    let latex = style == Style::Latex;
+    let is_log = latex && factor.starts_with(r"\ln");
+    let is_function = latex && [r"\cos", r"\sin", r"\sec"].iter().any(|f| factor.starts_with(f));
+    if is_log && followed {
+        line.push_str(&parenthesize(factor, style));
+        return;
+    }
+    if behind && !is_log && !is_function {
+        line.push_str(if latex { r"\," } else { "*" });
+    }
+    line.push_str(factor);
 }
 
 /// The terms as one line; the empty sum is `0`.
@@ -183,11 +187,8 @@ impl Print for PolynomialRing {
         in_order(a).into_iter().map(print).collect()
     }
 
-    /// As [`print_sum`] writes its terms; in text, where there are millions of them, none is built first.
+    /// As [`print_sum`] writes its terms, of which there may be millions: none is built first.
     fn print(&self, a: &Polynomial, style: Style) -> String {
-        if style == Style::Latex || a.is_zero() {
-            return print_sum(&self.print_terms(a, style), style);
-        }
         let mut written = Powers::default();
         let mut line = String::new();
         for (monomial, coefficient) in in_order(a) {
@@ -201,12 +202,12 @@ impl Print for PolynomialRing {
             let is_unit = *coefficient.denom() == 1 && *coefficient.numer().as_abs() == 1;
             let shown = monomial.factors().is_empty() || !is_unit;
             if shown {
-                let number = coefficient.to_string();
+                let number = print_rational(coefficient, style);
                 line.push_str(number.trim_start_matches('-'));
             }
-            self.write_factors(monomial, shown, &mut written, &mut line);
+            self.write_factors(monomial, shown, (style, &mut written), &mut line);
         }
-        line
+        if line.is_empty() { "0".to_owned() } else { line }
     }
 }
 
@@ -240,7 +241,7 @@ impl PolynomialRing {
     fn factors(&self, monomial: &PowerProduct, style: Style, written: &mut Powers) -> Vec<String> {
         if style == Style::Text {
             let mut line = String::new();
-            self.write_factors(monomial, false, written, &mut line);
+            self.write_factors(monomial, false, (style, written), &mut line);
             return if line.is_empty() { Vec::new() } else { vec![line] };
         }
         let power = |&(symbol, exponent): &(Symbol, i16)| {
@@ -251,22 +252,23 @@ impl PolynomialRing {
         factors.into_iter().map(|(_, power)| power).collect()
     }
 
-    /// Writes the factors in text, every power of a symbol once; `*` before the first where `behind` something.
+    /// Writes the factors, every power of a symbol once, `behind` a number or none.
     fn write_factors(
         &self,
         monomial: &PowerProduct,
         mut behind: bool,
-        written: &mut Powers,
+        (style, written): (Style, &mut Powers),
         line: &mut String,
     ) {
+        let mut left = monomial.factors().len();
         for logarithms in [false, true] {
             for &(symbol, exponent) in monomial.factors() {
                 let (last, power) = written.entry((symbol, exponent)).or_insert_with(|| {
-                    (self.stands_last(symbol), self.power_of(symbol, exponent, Style::Text))
+                    (self.stands_last(symbol), self.power_of(symbol, exponent, style))
                 });
                 if *last == logarithms {
-                    line.push_str(if behind { "*" } else { "" });
-                    line.push_str(power);
+                    left -= 1;
+                    write_factor(power, [behind, left > 0], style, line);
                     behind = true;
                 }
             }

@@ -6,13 +6,14 @@
 //! whole, where the derivation has D_0 as eigenvalues. A delayed value is exp(-T D) x in Horner's form,
 //! 1 - T D' (1 - T D'/2 (1 - ...)) with D' = D - D_0, followed by the shift of the phases, where the derivation builds the
 //! powers order by order. The delayed velocity is the velocity shifted so, where the derivation has the rate of change of
-//! the delayed value.
+//! the delayed value. Where D' z_j = mu_j z_j with constant mu_j, exp(-T D') multiplies z_j by exp(-T mu_j): Horner's form
+//! of that number, once for all values of the delay, where the derivation has the recurrence of its differential equation.
 
 use super::SlowFlow;
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::residual::polynomial_value;
-use lindstedt_algebra::AmplitudeAlgebra;
+use lindstedt_algebra::{AmplitudeAlgebra, LinearParts};
 use lindstedt_series::Series;
 use rug::Rational;
 
@@ -171,6 +172,7 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         let velocity: Vec<_> = x.iter().map(|x| self.rate(x)).collect();
         let mut values: Vec<Series<A::Element>> = Vec::new();
         let sought = Series::truncated(found.parameter.clone());
+        let stretched: Vec<_> = (0..algebra.delays()).map(|delay| self.stretched(delay)).collect();
         for node in &equation.nodes {
             let value = match node {
                 Node::Displacement => x[0].clone(),
@@ -181,7 +183,9 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
                 Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
                 Node::Unknown { index, velocity: late, delay: Some(delay) } => {
                     let now = if *late { &velocity } else { &x };
-                    self.delayed(now.get(*index).ok_or_else(unsupported)?, *delay)?
+                    let now = now.get(*index).ok_or_else(unsupported)?;
+                    let stretched = stretched.get(*delay).and_then(Option::as_deref);
+                    self.delayed(now, *delay, stretched)?
                 }
                 &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
                 node => {
@@ -220,18 +224,31 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         Series::truncated(along.coefficients)
     }
 
-    /// f(t - T). Every application of D' raises the order, so the inner sums are short.
+    /// f(t - T), where exp(-T D') is the product of z_j with `late`\[j\], if it is.
     fn delayed(
         &self,
         f: &Series<A::Element>,
         delay: usize,
+        late: Option<&[Series<A::Element>]>,
     ) -> Result<Series<A::Element>, ExpandError> {
+        let algebra = self.algebra;
+        let slid = match late.and_then(|late| self.times(f, late)) {
+            Some(slid) => slid,
+            None => self.slid(f, delay).ok_or_else(unsupported)?,
+        };
+        let shifted: Option<Vec<_>> =
+            slid.coefficients.iter().map(|c| algebra.shift(c, delay)).collect();
+        Ok(Series::truncated(shifted.ok_or_else(unsupported)?))
+    }
+
+    /// exp(-T D') f. Every application of D' raises the order, so the inner sums are short.
+    fn slid(&self, f: &Series<A::Element>, delay: usize) -> Option<Series<A::Element>> {
         let algebra = self.algebra;
         let shortened = |length: usize| {
             Series::truncated(f.coefficients.iter().take(length).cloned().collect())
         };
         let mut sum = shortened(1);
-        let time = algebra.neg(&algebra.delay(delay).ok_or_else(unsupported)?);
+        let time = algebra.neg(&algebra.delay(delay)?);
         // -T D'.
         let back = |rate: &Series<_>| rate.map(|c| algebra.mul(c, &time));
         let back = self.slow.each_ref().map(|rates| rates.iter().map(back).collect());
@@ -239,8 +256,100 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
             let change = self.along(&back, &sum).map(|c| algebra.scale(c, &Rational::from((1, i))));
             sum = shortened(self.order + 2 - i).add(algebra, &change);
         }
-        let shifted: Option<Vec<_>> =
-            sum.coefficients.iter().map(|c| algebra.shift(c, delay)).collect();
-        Ok(Series::truncated(shifted.ok_or_else(unsupported)?))
+        Some(sum)
+    }
+
+    /// exp(-T mu_j), if D' z_j = mu_j z_j with constants mu_j and D' does not turn the forces.
+    fn stretched(&self, delay: usize) -> Option<Vec<Series<A::Element>>> {
+        let algebra = self.algebra;
+        let [amplitudes, forces] = &self.slow;
+        let still = |rate: &Series<_>| rate.coefficients.iter().all(|c| algebra.is_zero(c));
+        if !forces.iter().all(still) {
+            return None;
+        }
+        let time = algebra.neg(&algebra.delay(delay)?);
+        let exponential = |(j, rate): (usize, &Series<A::Element>)| {
+            let back = |f| {
+                let (mut parts, rest) = algebra.linear_parts(f)?;
+                let own = parts.get_mut(j).map(|[own, _]| std::mem::replace(own, algebra.zero()));
+                let others = parts.iter().flatten().chain([&rest]).all(|f| algebra.is_zero(f));
+                let own = algebra.as_constant(&own.unwrap_or_else(|| algebra.zero()))?;
+                others.then(|| algebra.mul(&own, &time))
+            };
+            let back: Vec<_> = rate.coefficients.iter().map(back).collect::<Option<_>>()?;
+            let back = Series::truncated(back);
+            let one = Series::polynomial(vec![algebra.one()]);
+            let step = |sum: Series<_>, i: usize| {
+                let change = back.mul(algebra, &sum, self.order + 1 - i);
+                one.add(algebra, &change.map(|c| algebra.scale(c, &Rational::from((1, i)))))
+            };
+            Some((1..=self.order).rev().fold(one.clone(), step))
+        };
+        amplitudes.iter().enumerate().map(exponential).collect()
+    }
+
+    /// A real series with z_j multiplied by `factors`\[j\]; nothing where amplitudes do not stand alone.
+    fn times(
+        &self,
+        f: &Series<A::Element>,
+        factors: &[Series<A::Element>],
+    ) -> Option<Series<A::Element>> {
+        let algebra = self.algebra;
+        let parts: Vec<_> =
+            f.coefficients.iter().map(|c| algebra.linear_parts(c)).collect::<Option<_>>()?;
+        let mut sum = Series::truncated(parts.iter().map(|(_, rest)| rest.clone()).collect());
+        for (j, factor) in factors.iter().enumerate() {
+            let own = |(parts, _): &LinearParts<A::Element>| Some(parts.get(j)?[0].clone());
+            let Some(own) = parts.iter().map(own).collect::<Option<_>>() else { continue };
+            let product = Series::truncated(own).mul(algebra, factor, self.order);
+            let z = algebra.amplitude(j);
+            let real = |c: &_| algebra.twice_real(&algebra.mul(c, &z));
+            sum = sum.add(algebra, &product.map(real));
+        }
+        Some(sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test fails by panicking
+
+    use super::*;
+    use crate::compile::compile_system;
+    use crate::resonance::resonant;
+    use crate::resonance::tests::{Named, algebra, delay_loop};
+    use lindstedt_algebra::Ring;
+    use lindstedt_equation::Expression;
+
+    /// Both forms of exp(-T D') of a linear flow, on what it delays; of others there is one.
+    #[test]
+    fn a_stretched_amplitude_is_a_delayed_one() {
+        let (algebra, order) = (algebra(), 3);
+        let found = |more| {
+            let graph =
+                compile_system(&algebra, &[delay_loop(more)], &Named(&algebra), order).unwrap();
+            resonant(&algebra, &graph, order, &[], &mut |_| true).unwrap()
+        };
+        let linear = found(Expression::integer(0));
+        let judge = Judge::new(&algebra, &linear);
+        let late = judge.stretched(0).unwrap();
+        let x = Series::truncated(linear.solution[0].clone());
+        for f in [judge.rate(&x), x.clone()] {
+            let times = judge.times(&f, &late).unwrap();
+            assert_eq!(times.coefficients, judge.slid(&f, 0).unwrap().coefficients);
+            assert_ne!(times.coefficients, f.coefficients);
+        }
+        // No amplitude alone.
+        let square = x.mul(&algebra, &x, order);
+        assert!(judge.times(&square, &late).is_none());
+        let mut wrong = linear;
+        let z = algebra.amplitude(0);
+        for f in [algebra.conjugate(&z), algebra.mul(&z, &z), algebra.one()] {
+            wrong.flow[0][2] = f;
+            assert!(Judge::new(&algebra, &wrong).stretched(0).is_none());
+        }
+        wrong.flow[0][2] = algebra.zero();
+        wrong.detuning = vec![vec![algebra.one()]];
+        assert!(Judge::new(&algebra, &wrong).stretched(0).is_none());
     }
 }

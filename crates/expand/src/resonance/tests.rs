@@ -17,7 +17,7 @@ type Element = AmplitudeElement<ParameterFraction>;
 
 const NAMES: [&str; 9] = ["alpha", "omega", "T", "A", "B", "c", "P", "cos", "sin"];
 
-struct Named<'a>(&'a Algebra);
+pub(super) struct Named<'a>(pub(super) &'a Algebra);
 
 impl Binding<Algebra> for Named<'_> {
     fn parameter(&self, name: &str) -> Option<Element> {
@@ -35,7 +35,7 @@ fn field() -> ParameterField {
 }
 
 /// x'' + alpha^2 x - P cos(omega t) = eps (A (x - x(t - T)) + B (x' - x'(t - T)) - c x'), and one more term.
-fn delay_loop(more: Expression) -> Expression {
+pub(super) fn delay_loop(more: Expression) -> Expression {
     let (x, v, symbol) = (Expression::DISPLACEMENT, Expression::VELOCITY, Expression::parameter);
     let late = |e: Expression| e.delayed(symbol("T"));
     let force = symbol("A") * (x.clone() - late(x.clone()))
@@ -47,7 +47,7 @@ fn delay_loop(more: Expression) -> Expression {
         - Expression::Small * (force + more)
 }
 
-fn algebra() -> Algebra {
+pub(super) fn algebra() -> Algebra {
     let field = field();
     let [alpha, omega, time, cos, sin] = [0, 1, 2, 7, 8].map(|index| field.parameter(index));
     let still = [field.one(), field.zero()];

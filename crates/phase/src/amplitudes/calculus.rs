@@ -3,7 +3,7 @@
 use super::words::Word;
 use super::{AmplitudeElement, Amplitudes, Multiples, Scalars};
 use lindstedt_algebra::{
-    AmplitudeAlgebra, LinearPart, NEAR_MISS, PhaseError, RationalAlgebra, Ring, Split,
+    AmplitudeAlgebra, LinearPart, LinearParts, NEAR_MISS, PhaseError, RationalAlgebra, Ring, Split,
 };
 use rug::{Integer, Rational};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -82,6 +82,21 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         let slopes: Vec<_> = pairs.iter().map(|(_, g)| self.by_amplitude(g, j)).collect();
         let pairs: Vec<_> = pairs.iter().zip(&slopes).map(|((f, _), slope)| (*f, slope)).collect();
         self.with_conjugate(&self.sum_of_products(&pairs))
+    }
+    fn linear_parts(&self, f: &Self::Element) -> Option<LinearParts<Self::Element>> {
+        let places = 2 * self.amplitudes;
+        let part = |unit: Word| {
+            let own = self.layout.lowest(unit, places);
+            let mut part = self.filtered(f, |word| self.layout.lowest(word, places) == own);
+            part.terms.iter_mut().for_each(|(word, _)| *word -= unit);
+            part
+        };
+        let of = |j: usize| [2 * j, 2 * j + 1].map(|place| part(self.layout.unit(place)));
+        let (parts, rest): (Vec<_>, _) = ((0..self.amplitudes).map(of).collect(), part(0));
+        let all = parts.iter().flatten().chain([&rest]);
+        let found: usize = all.map(|part| part.terms.len()).sum();
+        let rest = AmplitudeElement { real: f.real || rest.real, ..rest };
+        (found == f.terms.len()).then_some((parts, rest))
     }
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element {
         let place = 2 * self.amplitudes + l;
