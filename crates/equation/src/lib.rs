@@ -10,6 +10,7 @@ mod expression;
 mod half_turn;
 mod methods;
 pub mod monomials;
+pub mod near_rest;
 pub mod print;
 mod problem;
 mod quantity;

@@ -47,7 +47,7 @@ pub struct Monomials {
 /// ```
 #[must_use]
 pub fn expand(e: &Expression) -> Option<Monomials> {
-    let mut expander = Expander { atoms: BTreeMap::new(), work: 0 };
+    let mut expander = Expander::up_to(u32::MAX);
     let terms = expander.terms(e)?;
     Some(Monomials { terms, atoms: expander.atoms })
 }
@@ -68,11 +68,13 @@ impl Expression {
     }
 }
 
-type Terms = BTreeMap<Monomial, Rational>;
+pub(crate) type Terms = BTreeMap<Monomial, Rational>;
 
-struct Expander {
-    atoms: BTreeMap<String, Expression>,
+pub(crate) struct Expander {
+    pub(crate) atoms: BTreeMap<String, Expression>,
     work: usize,
+    /// Products of a higher degree are left out.
+    degree: u32,
 }
 
 fn single(monomial: Monomial) -> Terms {
@@ -80,7 +82,11 @@ fn single(monomial: Monomial) -> Terms {
 }
 
 impl Expander {
-    fn terms(&mut self, e: &Expression) -> Option<Terms> {
+    pub(crate) fn up_to(degree: u32) -> Self {
+        Self { atoms: BTreeMap::new(), work: 0, degree }
+    }
+
+    pub(crate) fn terms(&mut self, e: &Expression) -> Option<Terms> {
         let one = Monomial::default();
         Some(match e {
             Expression::Number(q) if q.is_zero() => Terms::new(),
@@ -180,11 +186,13 @@ impl Expander {
         Some(power)
     }
 
-    fn product(&mut self, a: &Terms, b: &Terms) -> Option<Terms> {
-        self.spend(0, a.len() * b.len())?;
+    pub(crate) fn product(&mut self, a: &Terms, b: &Terms) -> Option<Terms> {
         let mut product = Terms::new();
         for (m, p) in a {
-            for (n, q) in b {
+            let most = self.degree.saturating_sub(m.degree());
+            let kept: Vec<_> = b.iter().filter(|(n, _)| n.degree() <= most).collect();
+            self.spend(0, kept.len())?;
+            for (n, q) in kept {
                 add(&mut product, times(m, n)?, &Rational::from(p * q));
             }
         }
@@ -193,7 +201,7 @@ impl Expander {
     }
 }
 
-fn add(sum: &mut Terms, monomial: Monomial, q: &Rational) {
+pub(crate) fn add(sum: &mut Terms, monomial: Monomial, q: &Rational) {
     use std::collections::btree_map::Entry;
     match sum.entry(monomial) {
         Entry::Vacant(entry) => {
@@ -228,6 +236,12 @@ fn times(a: &Monomial, b: &Monomial) -> Option<Monomial> {
 }
 
 impl Monomial {
+    /// The power of x, x' and the atoms together.
+    pub(crate) fn degree(&self) -> u32 {
+        let all = self.atoms.values().fold(self.x, |sum, n| sum.saturating_add(*n));
+        all.saturating_add(self.velocity)
+    }
+
     /// The monomial without the small parameter, x, x' and atoms: the constant factor.
     fn constant(&self) -> Self {
         Self { parameters: self.parameters.clone(), ..Self::default() }

@@ -10,7 +10,7 @@ use lindstedt_hopf::{
     Coefficient, HarmonicNumber, HopfCycle, HopfError, HopfPoint, HopfSettings, Law, Step,
 };
 use lindstedt_number::ball::Ball;
-use lindstedt_recognise::{about_rest, delay_equation};
+use lindstedt_recognise::delay_equation;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::time::Instant;
@@ -136,10 +136,8 @@ impl Oscillator {
         problem.equation = problem.equation.substitute(&|e| meaning(self, e));
         // Order n of the parameter follows from order n + 1 of the equation.
         let degree = u32::try_from(order).unwrap_or(u32::MAX).saturating_add(1);
-        let written = problem.equation.clone();
-        problem.equation = about_rest(&written, degree);
-        let expanded = problem.equation != written;
-        let equation = delay_equation(&problem, &values, name);
+        let expanded = !problem.equation.nodes().all(is_polynomial);
+        let equation = delay_equation(&problem, &values, name, degree);
         let equation = equation.map_err(|refusal| self.no_hopf_form(&refusal))?;
         let near = values.get(name).cloned().unwrap_or_else(|| Exact::from(0));
         let settings = HopfSettings {
@@ -194,7 +192,12 @@ impl Oscillator {
     fn no_hopf_form(&self, refusal: &lindstedt_recognise::Refusal) -> Error {
         let (kind, code, hint) = refusal.parts();
         let hint = match code {
-            "no-method" => "`lindstedt simulate` takes x'' = ... as it is".to_owned(),
+            "no-method" => {
+                let first = self.problem().equation.is_first_order();
+                let time = "; `lindstedt simulate` takes x'' = ... as it is";
+                let rest = "where the equation rests at another number c, c exact as 2 or ln(2), write c + x for x";
+                format!("{rest}{}", if first { "" } else { time })
+            }
             "no-value-set" => {
                 format!("{hint}; one parameter is sought, all others have values")
             }
@@ -202,6 +205,17 @@ impl Oscillator {
         };
         let message = format!("{}: {}", self.origin(), self.reason(refusal));
         Refused { code, kind, message, hint }.into()
+    }
+}
+
+/// Whether the node of a tree leaves a polynomial in the unknowns one.
+fn is_polynomial(e: &Expression) -> bool {
+    let whole = |n: &Expression| n.as_number().is_some_and(|n| n.is_integer() && n >= 0);
+    let moves = |e: &Expression| e.nodes().any(|e| matches!(e, Expression::Unknown(_)));
+    match e {
+        Expression::Power(base, n) => whole(n) || !moves(base) && !moves(n),
+        Expression::Function(_, argument) => !moves(argument),
+        _ => true,
     }
 }
 

@@ -28,7 +28,6 @@ mod refusal;
 mod saddle;
 mod search;
 mod splitting;
-mod taylor;
 mod threshold;
 
 pub use hopf::delay_equation;
@@ -42,5 +41,4 @@ pub use reading::Unperturbed;
 pub use refusal::{Refusal, Why};
 pub use saddle::SaddleProblem;
 pub use splitting::{GAMMA, OrbitSplitting, SplittingProblem};
-pub use taylor::about_rest;
 pub use threshold::{OrbitValue, Perturbation};

@@ -55,8 +55,12 @@ pub enum Why {
     NotLinearUnknown,
     /// It depends on t.
     DependsOnTime,
-    /// It is no polynomial in x, x' and their values at earlier times.
-    NotPolynomialDelayed,
+    /// It has no power series in x, x' and their values at earlier times about x = 0.
+    NotAnalyticAtRest,
+    /// It divides by what vanishes at x = 0.
+    SingularAtRest,
+    /// With others it is not told from zero at x = 0.
+    RestUndecided,
     /// It does not vanish at x = 0.
     NotAtRest,
     /// The parameter that is sought stands in a denominator, a power or a function.
@@ -92,8 +96,10 @@ impl fmt::Display for Why {
             Self::NotRational => "has a coefficient that is not rational",
             Self::NotLinearUnknown => "is not linear in the parameter that is sought",
             Self::DependsOnTime => "depends on t; Hopf points are those of an equilibrium",
-            Self::NotPolynomialDelayed => "is no polynomial in x, x' and their values at earlier times; of f regular at 0, taylor(f(z), 9) asks for one",
-            Self::NotAtRest => "does not vanish at x = 0, the equilibrium that is looked at: put x = c + y",
+            Self::NotAnalyticAtRest => "has no power series in x, x' and their values at earlier times about x = 0, the equilibrium that is looked at",
+            Self::SingularAtRest => "divides by what vanishes at x = 0, the equilibrium that is looked at",
+            Self::RestUndecided => "with the other terms without x is not told from zero at x = 0: write constants that cancel alike",
+            Self::NotAtRest => "does not vanish at x = 0, the equilibrium that is looked at",
             Self::UnknownInside => "is no polynomial in the parameter that is sought",
             Self::BadDelay => "has a delay that is not positive",
         })

@@ -305,6 +305,7 @@ impl Refusal for lindstedt_recognise::Refusal {
                 "no-method",
                 "`lindstedt simulate --section stroboscopic` shows where chaos begins",
             ),
+            Refusal::Term { why: Why::RestUndecided, .. } => (Undecided, "could-not-decide", ""),
             Refusal::NoOrbit => (NoAnswer, "no-method", "`lindstedt simulate` takes it"),
             Refusal::Melnikov(error) => return error.parts(),
             _ => (NoAnswer, "no-method", "`lindstedt problems --show FILE` lists the methods"),
