@@ -23,8 +23,12 @@ impl Options {
     /// A value with its own notation, a number among them.
     pub fn parsed<T: FromStr>(&self, name: &str) -> Result<Option<T>, Error> {
         let Some(text) = self.text(name) else { return Ok(None) };
+        let hint = match text.parse::<f64>() {
+            Ok(_) => "a whole number, not below 0",
+            Err(_) => "a number",
+        };
         let value = text.parse().map(Some);
-        value.map_err(|_| usage(format!("{name} = {text:?} is not understood"), ""))
+        value.map_err(|_| usage(format!("{name} = {text:?} is not understood"), hint))
     }
 
     /// A value read by a function of the engine.
@@ -53,7 +57,10 @@ impl Options {
             names.iter().copied().filter(|name| list.contains_key(*name)).collect();
         match given.as_slice() {
             [] | [_] => Ok(()),
-            given => Err(usage(format!("only one of {} at a time", given.join(", ")), "")),
+            given => {
+                let message = format!("only one of {} at a time", given.join(", "));
+                Err(usage(message, "leave the others out"))
+            }
         }
     }
 
@@ -73,7 +80,9 @@ impl Options {
         self.read(name, |text| {
             let parts = text.split(',').filter(|part| !part.trim().is_empty());
             let list: Result<Vec<T>, _> = parts.map(|part| part.trim().parse()).collect();
-            list.map_err(|_| usage(format!("{name} = {text:?} is no list of numbers"), ""))
+            list.map_err(|_| {
+                usage(format!("{name} = {text:?} is no list"), "whole numbers: [2, 4, 8]")
+            })
         })
     }
 

@@ -23,8 +23,12 @@ distributed = pytest.importorskip("distributed")
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[Any]:
-    """Four worker processes; one that is killed is started again."""
+    """Four worker processes; one that is killed is started again, however long that takes: after 15 seconds the cluster
+    would give it up, and close it just when it comes, on a busy machine."""
+    import dask
+
     with (
+        dask.config.set({"distributed.deploy.lost-worker-timeout": "10 minutes"}),
         distributed.LocalCluster(n_workers=4, threads_per_worker=1, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
     ):

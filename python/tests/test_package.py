@@ -51,7 +51,9 @@ def test_values_are_what_was_typed(duffing: Oscillator) -> None:
     sympy = pytest.importorskip("sympy")
     assert duffing.set(eps=sympy.Rational(1, 10)).values["eps"] == "1/10"
     assert Oscillator.builtin("pendulum", amplitude=sympy.pi / 4).values["amplitude"] == "1/4*pi"
-    for wrong in (True, math.nan, object()):
+    # The shortest decimal of a single precision number, and what a function of arrays returns.
+    assert duffing.set(eps=np.float32(0.1)).values["eps"] == duffing.set(eps=np.array(0.1)).values["eps"] == "1/10"
+    for wrong in (True, math.nan, object(), np.array([0.1])):
         with pytest.raises(lindstedt.UsageError):
             duffing.set(eps=wrong)
 
@@ -74,6 +76,97 @@ def test_refusals_are_exceptions() -> None:
     with pytest.raises(lindstedt.UsageError) as given:
         Oscillator(DUFFING).evaluate(eps=0.5)
     assert given.value.hint == "set(eps=...) before"
+    with pytest.raises(lindstedt.UsageError) as shown:
+        Oscillator("x'' + x + ) = 0")
+    assert "lindstedt" not in shown.value.hint and 'Oscillator.builtin("duffing").describe()["file"]' in shown.value.hint
+    assert "equation" in Oscillator.builtin("duffing").describe()["file"]
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ours"),
+    [
+        ("--set NAME=VALUE, for example 1/10", "set(NAME=VALUE), for example 1/10"),
+        ("--set k=1/2; --normalisation free keeps it", 'set(k=1/2); under("free") keeps it'),
+        ("lower --order or raise --limit-memory", "lower order or raise memory"),
+        ("--digits 30", "digits=30"),
+        ("--state 1,-1/2", 'state="1,-1/2"'),
+        ("`lindstedt evaluate --cycles AMPLITUDE` averages", "`evaluate cycles=AMPLITUDE` averages"),
+        ("--start \"1\" is not two values", 'start="1" is not two values'),
+        ("`lindstedt VERB --help` lists the options", "`help(Oscillator)` lists the options"),
+        ("see `lindstedt problems --show NAME`", "see `describe()`"),
+        ("more --digits, or values", "more digits, or values"),
+        ("--sweep shows where", "sweep shows where"),
+    ],
+)
+def test_hints_are_in_the_words_of_the_package(theirs: str, ours: str) -> None:
+    assert lindstedt._errors._as_python(theirs) == ours
+
+
+WRONG: list[tuple[str, Any]] = [
+    ("no text", lambda case: Oscillator(None)),  # type: ignore[arg-type]
+    ("no list", lambda case: case.evaluate({"eps": 0.5})),
+    ("no list", lambda case: lindstedt.grid(case, "evaluate", {"eps": 0.5})),  # type: ignore[dict-item]
+    ("no question", lambda case: lindstedt.grid(case, "evaluated", {"eps": [0.5]})),
+    ("no executor", lambda case: lindstedt.grid(case, "evaluate", {"eps": [0.5]}, executor=3)),
+    ("holds nothing", lambda case: lindstedt.grid(case, "evaluate", {"eps": [0.5]}, block=0)),
+    ("out of range", lambda case: case.derive(2, digits=0)),
+    ("out of range", lambda case: case.derive(2, digits=1_000_000)),
+    ("out of range", lambda case: case.derive(2, digits=20.5)),
+    ("out of range", lambda case: case.derive(2, memory=-1)),
+    ("no number", lambda case: case.derive(2, digits="20")),
+    ("no number", lambda case: case.derive(2, seconds="1")),
+    ("not understood", lambda case: case.derive(2.5)),
+    ("not understood", lambda case: case.derive(-1)),
+    ("no format", lambda case: case.derive(1).page("pdf")),
+    ("no array", lambda case: case.frequency_function(order=4)("1/10")),
+    ("no array", lambda case: case.frequency_function(order=4)(1j)),
+    ("broadcast", lambda case: case.frequency_function(order=4)([0.1, 0.2], [1, 2, 3])),
+]
+
+
+@pytest.mark.parametrize(("message", "ask"), WRONG)
+def test_wrong_input_is_refused_with_code_and_hint(duffing: Oscillator, message: str, ask: Any) -> None:
+    with pytest.raises(lindstedt.UsageError, match=message) as refused:
+        ask(duffing)
+    assert refused.value.code and refused.value.hint and "--" not in str(refused.value)
+
+
+def test_a_value_of_the_small_parameter_is_no_obstacle(duffing: Oscillator) -> None:
+    half = duffing.set(eps="1/2")
+    answer = half.derive(4)
+    assert answer.frequency == duffing.derive(4).frequency and "eps" not in answer.at
+    assert answer.remarks == ["no coefficient depends on eps = 1/2"]
+    cycle = Oscillator("x'' + x = eps*(1 - x**2)*x'")
+    averaged = cycle.set(eps="1/10").average(2)
+    assert averaged["series"] == cycle.average(2)["series"] and "eps" in averaged.remarks[-1]
+    numeric = half.derive(2, tier="collocation", digits=10)
+    assert numeric["series"]["frequency"][:2] == duffing.derive(2, tier="collocation", digits=10)["series"]["frequency"][:2]
+    assert "eps" in numeric.remarks[-1]
+
+
+def test_arrays_without_points(duffing: Oscillator) -> None:
+    omega, x = duffing.frequency_function(order=8), duffing.solution_function(order=8)
+    assert omega([]).shape == (0,) and omega(np.zeros((0, 3))).shape == (0, 3) and omega(0.1, []).shape == (0,)
+    assert x([0, 1], []).shape == (0, 2) and x([], 0.1).shape == (0,) and x.at([], "1/10") == []
+    assert len(omega.at_each(np.array([0.1, 0.2]), digits=8)) == 2 and omega.at_each([]) == []
+    motion = duffing.set(eps="1/2").solution(order=8)
+    assert motion([]).shape == (0,) and motion.at([]) == []
+    # Arrays that are not contiguous.
+    wide = np.linspace(0, 1, 20)[::2]
+    assert np.array_equal(omega(wide), omega(wide.copy())) and np.array_equal(motion(wide), motion(wide.copy()))
+
+
+def test_where_nothing_is_known_of_a_motion_it_is_no_number(duffing: Oscillator) -> None:
+    motion = duffing.set(eps="1/2").solution()
+    values, errors = motion([0.0, 1e3, 1e300, math.nan]), motion.error([0.0, 1e3, 1e300, math.nan])
+    assert np.isfinite(values[:2]).all() and np.isnan(values[2:]).all()
+    assert (errors[:2] < 1e-9).all() and np.isinf(errors[2:]).all()
+    # As long as there is a number it is within its error: the same with more digits.
+    far = motion.at([1e12])[0]
+    assert abs(float(far) - motion(1e12)) <= motion.error(1e12) < 1e-2
+    assert repr(motion) == "<Solution of <Oscillator x'' + x + eps*x^3 = 0, eps=1/2>>"
+    everywhere = duffing.solution_function(order=8)
+    assert np.isnan(everywhere([1e300], 0.1)).all() and "over eps, amplitude" in repr(everywhere)
 
 
 def test_numbers() -> None:
@@ -341,6 +434,12 @@ def test_figures_and_tables(duffing: Oscillator, tmp_path: Path) -> None:
     assert isinstance(answer.to_pandas(), pandas.DataFrame)
     again = pickle.loads(pickle.dumps(answer))
     assert again.to_dict() == answer.to_dict() and str(again) == str(answer)
+    times: dict[str, Any] = {"order": 8, "digits": 8}
+    assert duffing.set(eps=1).evaluate(times=np.linspace(0, 6, 7), **times).table() == table
+    derived = duffing.derive(2)
+    assert derived.table()["frequency"] == [1, 0.375, -21 / 256] and list(derived.to_pandas()["order"]) == [0, 1, 2]
+    with pytest.raises(lindstedt.NoAnswerError):
+        duffing.set(eps=1).evaluate(order=8, digits=8).plot()
     # Values like 1/3 are numbers there, and the curve is over them.
     swept = duffing.evaluate({"eps": [0, "1/3", "1/2"]}, order=8, digits=8)
     assert swept.table()["eps"] == [0, 1 / 3, 0.5]

@@ -18,13 +18,7 @@ const NEGATIVE: &str = "amplitude > 0 (a start at -a is a start at a of the equa
 /// The parameters there are, in place of one that is none.
 pub(crate) fn unknown_parameter(problem: &Problem, name: &str) -> Error {
     let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
-    let mut known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-    if *name == *problem.small {
-        known += &format!(
-            " ({name} is the small parameter: no coefficient depends on it, `lindstedt evaluate` takes its \
-             value)"
-        );
-    }
+    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
     Error::UnknownParameter { problem: problem.name.to_string(), name: name.to_owned(), known }
 }
 

@@ -155,7 +155,7 @@ impl FrequencyFunction {
     /// stopped work did not reach are missing.
     #[must_use]
     pub fn list(&self, small: &[f64], amplitude: &[f64], stop: &Stop) -> Vec<Estimated> {
-        let count = small.len().max(amplitude.len());
+        let count = points(small, amplitude);
         let mut values = vec![Estimated { value: f64::NAN, error: f64::INFINITY }; count];
         values.par_chunks_mut(BLOCK).enumerate().for_each(|(block, values)| {
             if stop.asked() {
@@ -166,6 +166,14 @@ impl FrequencyFunction {
             }
         });
         values
+    }
+}
+
+/// The number of points of two lists: one value is that value everywhere, an empty list has none.
+pub(crate) fn points(small: &[f64], amplitude: &[f64]) -> usize {
+    match (small.len(), amplitude.len()) {
+        (0, _) | (_, 0) => 0,
+        (small, amplitude) => small.max(amplitude),
     }
 }
 

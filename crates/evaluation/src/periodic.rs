@@ -30,6 +30,9 @@ pub struct PeriodicSolution {
     /// sum_k (k + 1)(|c_k| + |s_k|).
     #[serde(skip)]
     weighted: f64,
+    /// sum_k |(c_k, s_k)|, which no x exceeds.
+    #[serde(skip)]
+    size: f64,
 }
 
 impl PeriodicSolution {
@@ -38,19 +41,21 @@ impl PeriodicSolution {
     pub fn new(fourier: Fourier, frequency: Estimated, by: &'static str) -> Self {
         let Fourier { coefficients: harmonics, deviation, largest_error, .. } = fourier;
         let sizes = harmonics.iter().map(|(c, s)| c.hypot(*s));
+        let size = sizes.clone().sum();
         let slope = sizes.enumerate().map(|(k, size)| k as f64 * size).sum();
         let sizes = harmonics.iter().map(|(c, s)| c.abs() + s.abs());
         let weighted = sizes.zip(1u32..).map(|(size, k)| f64::from(k) * size).sum();
         let deviation = deviation + largest_error;
         let Estimated { value: frequency, error: frequency_error } = frequency;
-        Self { frequency, frequency_error, harmonics, deviation, slope, by, weighted }
+        Self { frequency, frequency_error, harmonics, deviation, slope, by, weighted, size }
     }
 
     /// x at a time, with its estimated error,
     ///
     ///   deviation + slope |t| (omega's error + rounding omega) + 3 rounding sum_k (k + 1) |h_k|,
     ///
-    /// as the phase is rounded once and every harmonic turns the one before.
+    /// as the phase is rounded once and every harmonic turns the one before; infinite where that is more than
+    /// sum_k |h_k|, so that the motion is somewhere and no more is known.
     #[must_use]
     pub fn at(&self, time: f64) -> Estimated {
         let mut value = [f64::NAN];
@@ -65,7 +70,7 @@ impl PeriodicSolution {
         // At 0 the phase is known whatever omega is.
         let phase = if time == 0.0 { 0.0 } else { time.abs() * unknown };
         let error = self.deviation + self.slope * phase + 3.0 * f64::EPSILON * self.weighted;
-        if error.is_nan() { f64::INFINITY } else { error }
+        if error <= self.size { error } else { f64::INFINITY }
     }
 
     /// The errors at many times.

@@ -6,7 +6,7 @@
 //! zeros has no diagonal approximants. What is summed is S + X with S four times the size of x_0: approximants do
 //! not notice a constant, errors are then those relative to the size of the motion also where x passes zero.
 
-use crate::compiled::{FrequencyFunction, Varied, entry};
+use crate::compiled::{FrequencyFunction, Varied, entry, points};
 use crate::error::EvaluationError as Error;
 use crate::few;
 use crate::fourier::Fourier;
@@ -124,7 +124,7 @@ impl SolutionFunction {
     /// work did not reach are missing at the end.
     #[must_use]
     pub fn list(&self, small: &[f64], amplitude: &[f64], stop: &Stop) -> Vec<PeriodicSolution> {
-        let count = small.len().max(amplitude.len());
+        let count = points(small, amplitude);
         let one = |i: usize| (!stop.asked()).then(|| self.at(entry(small, i), entry(amplitude, i)));
         let found: Vec<_> = (0..count).into_par_iter().map(one).collect();
         found.into_iter().map_while(|solution| solution).collect()

@@ -102,10 +102,7 @@ impl Oscillator {
         let done = value.order < question.order || unchecked;
         let standing = self.standing(done, value.order, !unchecked, &mut remarks);
         let at = self.entering(&value);
-        let idle =
-            self.given().iter().filter(|(name, _)| !at.iter().any(|(known, _)| known == *name));
-        let idle = idle.map(|(name, q)| format!("no coefficient depends on {name} = {q}"));
-        remarks.extend(idle.map(Remark));
+        remarks.extend(self.idle(|name| at.iter().any(|(known, _)| known == name)));
         let header = self.header(at, Some(value.order), "exact", start);
         Ok(Answer { header, value, standing, remarks })
     }
@@ -150,8 +147,11 @@ impl Oscillator {
         })?;
         let value = value.with_numbers(work.printed_digits(), &self.problem().small);
         let tier = value.tier.name();
-        let header = self.header(self.given_text(), Some(value.order), tier, start);
-        let remarks = self.remarks().to_vec();
+        let entering = self.entering_coefficients();
+        let at = entering.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
+        let header = self.header(at, Some(value.order), tier, start);
+        let mut remarks = self.remarks().to_vec();
+        remarks.extend(self.idle(|name| entering.contains_key(name)));
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }
 
@@ -186,6 +186,7 @@ impl Oscillator {
         let had = [Quantity::GrowthRate, Quantity::Frequency, Quantity::Solution];
         let mut remarks = self.remarks().to_vec();
         remarks.extend(taken);
+        remarks.extend(self.idle(|name| at.contains_key(name)));
         remarks.extend(self.missing(&|asked| had.contains(&asked)));
         value.convergence = convergence::of(&value, &at);
         value.description = free.describe().ok();
@@ -212,11 +213,13 @@ impl Oscillator {
             };
             averaging::average(self.problem(), &settings, &mut |progress| work.goes_on(progress))
         };
-        let error = match average(self.given()) {
-            Ok(value) => return Ok((value, self.given().clone(), None)),
+        let given = self.entering_coefficients();
+        let error = match average(&given) {
+            Ok(value) => return Ok((value, given, None)),
             Err(error) => error,
         };
-        let all: BTreeMap<String, Exact> = self.all_values().into_iter().collect();
+        let mut all: BTreeMap<String, Exact> = self.all_values().into_iter().collect();
+        all.retain(|name, _| given.contains_key(name) || !self.given().contains_key(name));
         let no_symbols = matches!(
             error,
             DerivationError::Expand(
@@ -224,7 +227,7 @@ impl Oscillator {
                     | ExpandError::Phase { source: PhaseError::Indivisible { .. }, .. }
             )
         );
-        if !no_symbols || all.len() == self.given().len() {
+        if !no_symbols || all.len() == given.len() {
             return Err(self.refusal(error.into()));
         }
         let value = average(&all).map_err(|error| self.refusal(error.into()))?;
@@ -237,11 +240,26 @@ impl Oscillator {
         Settings {
             order,
             condition: self.asked_condition(),
-            parameters: self.given().clone(),
+            parameters: self.entering_coefficients(),
             memory: work.memory,
             stop: work.stop.clone(),
             ..Settings::default()
         }
+    }
+
+    /// The values given but that of the small parameter of an equation, on which no coefficient depends.
+    pub(crate) fn entering_coefficients(&self) -> BTreeMap<String, Exact> {
+        let mut given = self.given().clone();
+        if self.problem().parameters.iter().all(|card| card.name != self.problem().small) {
+            given.remove(&*self.problem().small);
+        }
+        given
+    }
+
+    /// That no coefficient depends on a value given.
+    fn idle(&self, enters: impl Fn(&str) -> bool) -> impl Iterator<Item = Remark> {
+        let idle = self.given().iter().filter(move |(name, _)| !enters(name));
+        idle.map(|(name, q)| Remark(format!("no coefficient depends on {name} = {q}")))
     }
 
     /// What the equation is made of, and which methods take it, in words.

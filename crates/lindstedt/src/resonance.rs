@@ -49,7 +49,7 @@ impl Oscillator {
     pub fn averaged(&self, order: usize, work: &Work) -> Result<Answer<Averaged>, Error> {
         let flow = || Ok(self.slow_flow(order, work)?.map(Averaged::Flow));
         if self.has_flow_alone() {
-            check_parameters(self.problem(), self.given())?;
+            check_parameters(self.problem(), &self.entering_coefficients())?;
             return flow();
         }
         // A frequency that was given beside a resonance is swept by its detuning.

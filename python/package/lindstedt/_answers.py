@@ -8,7 +8,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from ._errors import NoAnswerError
+from ._errors import NoAnswerError, UsageError
 from ._native import Found
 from ._numbers import Number, Series, read
 
@@ -101,6 +101,8 @@ class Answer:
 
     def page(self, format: str = "text") -> str:
         """The answer as a page: text, latex, markdown or html."""
+        if format not in _FORMATS:
+            raise UsageError(f"there is no format {format!r}", "usage", ", ".join(_FORMATS))
         return self._form(format) or ""
 
     def __str__(self) -> str:
@@ -137,10 +139,13 @@ class Answer:
 
     def plot(self, ax: Any = None, **style: Any) -> Any:
         """Draws the table over its first column with matplotlib, one line per column of numbers."""
+        columns = {n: c for n, c in self.table().items() if c and not any(isinstance(x, str) for x in c)}
+        if not columns:
+            hint = "evaluate with times or a sweep, simulate, respond with a sweep"
+            raise NoAnswerError("this answer has no table of numbers to draw", "figure", hint)
         import matplotlib.pyplot as plt
 
         ax = ax if ax is not None else plt.gca()
-        columns = {n: c for n, c in self.table().items() if c and not any(isinstance(x, str) for x in c)}
         (name, across), *rest = columns.items()
         for label, column in rest:
             ax.plot(across, column, label=label, **style)
@@ -187,6 +192,13 @@ class Derivation(Answer):
             hint = f"its series: {', '.join(self._read.get('series', {})) or 'none'}"
             raise NoAnswerError("this expansion has no series of a frequency in numbers", "no-series", hint)
         return found
+
+    def table(self) -> dict[str, list[Any]]:
+        """The coefficients of the series in numbers, order by order: ready for `pandas.DataFrame`."""
+        series = {name: [float(number) for number in found] for name, found in self.series.items()}
+        longest = max(map(len, series.values()), default=0)
+        padded = {name: column + [float("nan")] * (longest - len(column)) for name, column in series.items()}
+        return {"order": list(range(longest)), **padded} if series else {}
 
     def _repr_latex_(self) -> str | None:
         names = {"frequency": r"\omega", "frequency_squared": r"\omega^2", "period_over_2pi": r"T/2\pi"}

@@ -22,8 +22,15 @@ if TYPE_CHECKING:
 Doubles = NDArray[numpy.float64]
 
 
+def _doubles(values: ArrayLike) -> Doubles:
+    try:
+        return numpy.asarray(values, dtype=numpy.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{values!r} is no array of doubles: {error}", "value", "floats; exact values go into set()") from None
+
+
 def _flat(values: ArrayLike) -> Doubles:
-    return numpy.ascontiguousarray(values, dtype=numpy.float64).ravel()
+    return numpy.ascontiguousarray(_doubles(values)).ravel()
 
 
 class _Made:
@@ -36,6 +43,10 @@ class _Made:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_again, self._from)
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.data.get("parameters", []))
+        return f"<{type(self).__name__} of {self._from[0]!r}{' over ' if names else ''}{names}>"
 
     def _evaluated(self, digits: int, options: dict[str, Any], **values: Any) -> Answer:
         """The answer of `evaluate` to so many digits with the same options."""
@@ -88,10 +99,13 @@ class _OfParameters(_Made):
         return values if amplitude is None else {**values, "amplitude": amplitude}
 
     def _points(self, small: ArrayLike, amplitude: ArrayLike | None) -> tuple[Doubles, Doubles]:
-        amplitude = self._amplitude(amplitude)
-        if numpy.ndim(amplitude):
-            small, amplitude = numpy.broadcast_arrays(small, amplitude)
-        return numpy.asarray(small, dtype=numpy.float64), numpy.asarray(amplitude, dtype=numpy.float64)
+        first, second = _doubles(small), _doubles(self._amplitude(amplitude))
+        if second.ndim:
+            try:
+                first, second = numpy.broadcast_arrays(first, second)
+            except ValueError as error:
+                raise UsageError(f"{self.parameters[0]} and amplitude: {error}", "value", "arrays of one shape") from None
+        return first, second
 
 
 class FrequencyFunction(_OfParameters):
@@ -105,11 +119,11 @@ class FrequencyFunction(_OfParameters):
         return found
 
     def at_each(
-        self, small: Sequence[Value], amplitude: Value | None = None, digits: int = 30
+        self, small: Sequence[Value] | Doubles, amplitude: Value | None = None, digits: int = 30
     ) -> list[Number | None]:
         """omega at many values of the small parameter to so many digits, each with its error, derived once: by the sweep of
         `evaluate`. None where the sum has not one digit."""
-        if not small:
+        if len(small) == 0:
             return []
         values = self._values(small[0], amplitude)
         name = self.parameters[0]
@@ -119,9 +133,9 @@ class FrequencyFunction(_OfParameters):
 
     def with_error(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> tuple[Doubles, Doubles]:
         """omega and its estimated errors, infinite where the sum has not one digit."""
-        small, amplitude = self._points(small, amplitude)
-        values, errors = self._native.at(_flat(small), _flat(amplitude))
-        return values.reshape(small.shape), errors.reshape(small.shape)
+        first, second = self._points(small, amplitude)
+        values, errors = self._native.at(_flat(first), _flat(second))
+        return values.reshape(first.shape), errors.reshape(first.shape)
 
     def __call__(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> Doubles:
         values, errors = self.with_error(small, amplitude)
@@ -134,6 +148,8 @@ class SolutionFunction(_OfParameters):
 
     def at(self, times: ArrayLike, small: Value, amplitude: Value | None = None, digits: int = 30) -> list[Number]:
         """x at times and one point to so many digits, each with its error: by `evaluate`."""
+        if not numpy.size(times):
+            return []
         found = self._evaluated(digits, {"times": _listed(times)}, **self._values(small, amplitude))
         return [point["x"] for point in found["solution"]["values"]]
 
@@ -142,9 +158,9 @@ class SolutionFunction(_OfParameters):
     ) -> tuple[Doubles, Doubles]:
         """x and its estimated errors, infinite where nothing is known: at every point of the parameters all times, in the
         shape of the parameters followed by that of the times."""
-        small, amplitude = self._points(small, amplitude)
-        shape = small.shape + numpy.shape(times)
-        values, errors = self._native.at(_flat(times), _flat(small), _flat(amplitude))
+        first, second = self._points(small, amplitude)
+        shape = first.shape + numpy.shape(times)
+        values, errors = self._native.at(_flat(times), _flat(first), _flat(second))
         return values.reshape(shape), errors.reshape(shape)
 
     def __call__(self, times: ArrayLike, small: ArrayLike, amplitude: ArrayLike | None = None) -> Doubles:
@@ -153,10 +169,12 @@ class SolutionFunction(_OfParameters):
 
 
 class Solution(_Made):
-    """x(t) by its harmonics: call it with an array of times."""
+    """x(t) by its harmonics: call it with an array of times. It is no number where its error is more than the motion."""
 
     def at(self, times: ArrayLike, digits: int = 30) -> list[Number]:
         """x at times to so many digits, each with its error: by `evaluate`."""
+        if not numpy.size(times):
+            return []
         found = self._evaluated(digits, {"times": _listed(times)})
         return [point["x"] for point in found["solution"]["values"]]
 
@@ -176,11 +194,16 @@ class Solution(_Made):
         return numpy.array(self.data["harmonics"])
 
     def __call__(self, times: ArrayLike) -> Doubles:
-        values: Doubles = self._native.at(_flat(times))
+        flat = _flat(times)
+        values: Doubles = self._native.at(flat)
+        # The error grows with |t|: what the two ends know, all know.
+        ends = [flat.min(), flat.max()] if flat.size else []
+        if not numpy.isfinite(self._native.errors(_flat(ends))).all():
+            values[~numpy.isfinite(self._native.errors(flat))] = numpy.nan
         return values.reshape(numpy.shape(times))
 
     def error(self, times: ArrayLike) -> Doubles:
-        """The estimated error at times: it grows with t by what omega is wrong by."""
+        """The estimated error at times: it grows with t by what omega is wrong by, and is infinite where x is not known."""
         errors: Doubles = self._native.errors(_flat(times))
         return errors.reshape(numpy.shape(times))
 
@@ -218,6 +241,8 @@ class AveragedSolution(_Made):
 
     def at(self, times: ArrayLike, digits: int = 30) -> list[dict[str, Number]]:
         """a, psi, x at increasing times to so many digits, each with its error: by `evaluate`."""
+        if not numpy.size(times):
+            return []
         values = self._evaluated(digits, {"times": _listed(times)})["solution"]["values"]
         return [{name: point[name] for name in ("a", "psi", "x")} for point in values]
 

@@ -48,13 +48,32 @@ _KINDS: dict[str, type[LindstedtError]] = {
 # Options of the command line that are called otherwise here.
 _NAMES = {"limit-seconds": "seconds", "limit-memory": "memory", "f64": "doubles", "normalisation": "under"}
 
+# What the command line says otherwise than by an option.
+_WORDS = [
+    (r"`lindstedt problems --show [A-Z]+`", "`describe()`"),
+    (r"`lindstedt problems --show ([a-z-]+)`", r'`print(Oscillator.builtin("\1").describe()["file"])`'),
+    (r"`lindstedt problems`", "`describe()`"),
+    (r"`lindstedt VERB --help`", "`help(Oscillator)`"),
+    (r"`lindstedt ([^`]*)`", r"`\1`"),
+    (r"--normalisation ([a-z]+)", r'under("\1")'),
+    (r"--set ([A-Za-z_]\w*)=([^\s,;`]+)", r"set(\1=\2)"),
+]
 
-def _as_python(hint: str) -> str:
-    """A hint in the words of this package: `set(NAME=VALUE)`, keywords without dashes."""
-    hint = re.sub(r"--set ([A-Za-z_]\w*)=([^\s,;`]+)", r"set(\1=\2)", hint)
-    return re.sub(r"--([a-z][a-z0-9-]*)", lambda found: _NAMES.get(found[1], found[1]).replace("-", "_"), hint)
+
+def _as_python(text: str) -> str:
+    """A message or hint in the words of this package: `set(NAME=VALUE)`, keywords without dashes."""
+    for theirs, ours in _WORDS:
+        text = re.sub(theirs, ours, text)
+
+    def option(found: re.Match[str]) -> str:
+        name, value = _NAMES.get(found[1], found[1]).replace("-", "_"), found[2]
+        if value is None:
+            return name
+        return f"{name}={value}" if re.fullmatch(r"[\d.e+-]+|[A-Z]+|\".*\"", value) else f'{name}="{value}"'
+
+    return re.sub(r"(?<![^\s`(])--([a-z][a-z0-9-]*)(?:[ =](\"[^\"]*\"|[\dA-Z+-][^\s`;)]*[^\s`;),.:?]|[\dA-Z]))?", option, text)
 
 
 def refusal(kind: str, code: str, message: str, hint: str) -> LindstedtError:
     """The exception for a refusal of that kind."""
-    return _KINDS.get(kind, LindstedtError)(message, code, _as_python(hint))
+    return _KINDS.get(kind, LindstedtError)(_as_python(message), code, _as_python(hint))

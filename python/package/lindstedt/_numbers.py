@@ -11,11 +11,13 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Union
 
+import numpy
+
 from ._errors import UsageError
 
 Value = Union[int, Fraction, Decimal, float, str, Any]
 """An exact value: int, Fraction, Decimal, str (`"1/3"`, `"pi/4"`, `"2.5e-3"`), a SymPy number; a
-float is its shortest decimal, what was typed: 0.1 is 1/10, not 0x1.999999999999ap-4."""
+float is its shortest decimal, what was typed: 0.1 is 1/10, not 0x1.999999999999ap-4; NumPy's single ones likewise."""
 
 
 def exact(value: Value) -> str:
@@ -24,6 +26,8 @@ def exact(value: Value) -> str:
     >>> exact(0.1), exact(Fraction(1, 3)), exact("2**3")
     ('0.1', '1/3', '2^3')
     """
+    if isinstance(value, numpy.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, bool):
         raise UsageError(f"{value!r} is no number", "value", "an int, Fraction, str, Decimal or float")
     if isinstance(value, str):
@@ -37,7 +41,8 @@ def exact(value: Value) -> str:
     if isinstance(value, numbers.Real):
         number = float(value)
         if math.isfinite(number):
-            return repr(number)
+            # A single precision number has a shorter decimal than the double that it is.
+            return str(value) if isinstance(value, numpy.floating) else repr(number)
     if hasattr(value, "as_coeff_Mul") and hasattr(value, "free_symbols") and not value.free_symbols:
         coefficient, rest = value.as_coeff_Mul()
         if rest == 1 or str(rest) == "pi":

@@ -5,11 +5,15 @@ from __future__ import annotations
 import functools
 import itertools
 import json
+import math
+import numbers
 import os
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Union
+
+import numpy
 
 from ._answers import Answer, Derivation
 from ._arrays import (
@@ -40,14 +44,20 @@ def _sweep(sweep: Sweep) -> str:
             low, high, count = values
             axes.append(f"{name}={exact(low)}..{exact(high)}:{int(count)}")
         else:
-            axes.append(f"{name}={','.join(exact(value) for value in values)}")
+            axes.append(f"{name}={','.join(map(exact, _several(values, name)))}")
     return ";".join(axes)
+
+
+def _several(values: Any, name: str) -> list[Any]:
+    if isinstance(values, str) or numpy.ndim(values) == 0 and not isinstance(values, Iterable):
+        raise UsageError(f"{name}: {values!r} is no list of values", "usage", f"[{values!r}]")
+    return list(values)
 
 
 def _text(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, (list, tuple, numpy.ndarray)) and numpy.ndim(value):
         return ",".join(exact(item) for item in value)
     return exact(value)
 
@@ -84,10 +94,12 @@ class Oscillator:
     """
 
     def __init__(self, equation: str, **values: Value) -> None:
-        self._init("equation", equation.replace("**", "^"), {}, None)
+        self._init("equation", equation.replace("**", "^") if isinstance(equation, str) else equation, {}, None)
         self.__dict__.update(self.set(**values).__dict__)
 
     def _init(self, kind: str, text: str, values: dict[str, str], condition: str | None) -> None:
+        if not isinstance(text, str):
+            raise UsageError(f"{text!r} is no text", "usage", "\"x'' + x + eps*x**3 = 0\"")
         self._state = (kind, text, dict(values), condition)
         self._case = Case(kind, text, list(values.items()), condition)
 
@@ -295,8 +307,8 @@ class Oscillator:
         if executor is None or kind is not BifurcationDiagram and len(counts) < 2:
             return kind(**_part(self, verb, options, None))
         count = counts[-1]
-        block = max(1, -(-count // _BLOCKS) if block is None else block)
-        parts = [(first, min(block, count - first)) for first in range(0, count, block)]
+        block = max(1, -(-count // _BLOCKS)) if block is None else block
+        parts = [(first, min(block, count - first)) for first in _starts(count, block)]
         return kind.joined(_split(executor, functools.partial(_part, self, verb, options), parts))
 
     def stability_chart(
@@ -326,11 +338,21 @@ class Oscillator:
 
 
 _MEANS = {"digits", "doubles", "memory", "seconds", "progress"}
+_COUNTS = {"digits": 10_000, "memory": 2**63 - 1}
 
 
 def _means(options: dict[str, Any]) -> dict[str, Any]:
-    """Takes digits, doubles, memory, seconds and progress out of the options."""
-    return {name: options.pop(name) for name in _MEANS if name in options}
+    """Takes digits, doubles, memory, seconds and progress out of the options; what is nothing is as usual."""
+    means = {name: options.pop(name) for name in _MEANS if name in options}
+    means = {name: value for name, value in means.items() if value is not None}
+    for name, value in means.items():
+        if name in ("digits", "memory", "seconds") and (isinstance(value, bool) or not isinstance(value, numbers.Real)):
+            raise UsageError(f"{name} = {value!r} is no number", "usage", f"{name}=30")
+        if name in _COUNTS:
+            if not (math.isfinite(value) and value == int(value) and 1 <= value <= _COUNTS[name]):
+                raise UsageError(f"{name} = {value!r} is out of range", name, f"a whole number from 1 to {_COUNTS[name]}")
+            means[name] = int(value)
+    return means
 
 
 _process: list[int] = []
@@ -374,11 +396,26 @@ def grid(
     and the answers are those of a local run but for the seconds. A point that is refused stands as its exception.
     Processes are started with "spawn", not forked.
     """
-    names, axes = list(values), [list(axis) for axis in values.values()]
+    if verb not in _VERBS:
+        raise UsageError(f"there is no question {verb!r}", "usage", ", ".join(sorted(_VERBS)))
+    names, axes = list(values), [_several(axis, name) for name, axis in values.items()]
     points = list(itertools.product(*axes))
-    blocks = [points[i : i + block] for i in range(0, len(points), max(block, 1))]
+    blocks = [points[i : i + block] for i in _starts(len(points), block)]
     work = functools.partial(_block, oscillator, verb, names, options=options)
     return [found for part in _split(executor, work, blocks) for found in part]
+
+
+_VERBS = {
+    *("derive", "average", "evaluate", "prove", "respond", "verify", "trade", "simulate", "threshold", "stability"),
+    *("frequency_function", "solution_function", "solution", "averaged_solution"),
+}
+
+
+def _starts(count: int, block: int) -> range:
+    """Where blocks of so many begin."""
+    if block < 1:
+        raise UsageError(f"block = {block!r} holds nothing", "usage", "a whole number from 1")
+    return range(0, count, block)
 
 
 # Of a chart without `block`: enough for some tens of workers, few enough for what a block costs beside its work.
@@ -398,6 +435,8 @@ def _split(executor: Any, work: Callable[[Any], Any], parts: list[Any]) -> list[
         return [work(part) for part in parts]
     if hasattr(executor, "get_executor"):
         return _on_dask(executor, work, parts)
+    if not hasattr(executor, "submit"):
+        raise UsageError(f"{executor!r} is no executor", "usage", "a concurrent.futures.Executor or a Dask client")
     futures = [executor.submit(work, part) for part in parts]
     return [future.result() for future in futures]
 

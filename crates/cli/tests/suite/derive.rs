@@ -173,6 +173,23 @@ fn bad_input_gets_one_clear_line_and_its_exit_code() {
     }
 }
 
+/// It is put in by `evaluate`: a derivation is in powers of it, by every method.
+#[test]
+fn a_value_of_the_small_parameter_changes_no_derivation() {
+    const EQUATION: &str = "x'' + x + eps*(x^3 - x'/5)";
+    const METHODS: [&[&str]; 3] =
+        [&[], &["--normalisation", "free"], &["--tier", "collocation", "--digits", "8"]];
+    for method in METHODS {
+        let ask = |equation: &str, set: &[&str]| {
+            json(&[&["derive", equation, "--order", "2"], set, method].concat())
+        };
+        let equation = if method.contains(&"free") { EQUATION } else { "x'' + x + eps*x^3" };
+        let (open, given) = (ask(equation, &[]), ask(equation, &["--set", "eps=1/10"]));
+        assert_eq!([&open["series"], &open["at"]], [&given["series"], &given["at"]]);
+        assert_eq!(given["remarks"][0], "no coefficient depends on eps = 1/10", "{method:?}");
+    }
+}
+
 #[test]
 fn problems_lists_what_is_built_in() {
     insta::assert_snapshot!(text(&["problems", "--show", "power-law"]));

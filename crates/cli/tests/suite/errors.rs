@@ -86,7 +86,7 @@ const TABLE: &[(i32, &str, &str, &str, &str)] = &[
         "problems --show",
         "problems --show duffing",
     ),
-    (2, "unknown-parameter", "derive \"x'' + x + eps*x^3\" --set eps=1/10", "problems", "problems"),
+    (2, "unknown-parameter", "derive \"x'' + x + eps*x^3\" --set k=1/10", "problems", "problems"),
     (2, "unknown-normalisation", "derive van-der-pol --normalisation initial", "condition", ""),
     (
         2,

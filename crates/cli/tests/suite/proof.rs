@@ -216,7 +216,10 @@ fn the_motion_is_that_of_newtons_orbit() {
         "{rest:?}"
     );
     assert!(error(&rest) < decimal("1e-17"));
-    let code = cycle.solution_code(&Evaluate::default(), Language::Rust, 40, &work).unwrap().value;
+    let code = cycle.solution_code(&Evaluate::default(), Language::Rust, 40, &work).unwrap();
+    let arrays = cycle.periodic_solution(&Evaluate::default(), 40, &work).unwrap();
+    assert_eq!([code.header.tier, arrays.header.tier], ["newton"; 2]);
+    let code = code.value;
     let at_rest: f64 = code.terms.iter().map(|(_, c, _)| c).sum();
     assert!(
         (at_rest - middle(&largest).to_f64()).abs() <= code.deviation + 1e-13,

@@ -166,7 +166,7 @@ impl Oscillator {
     ) -> Result<Answer<PeriodicSolution>, Error> {
         let start = Instant::now();
         let solved = self.solved(question, harmonics, work)?;
-        let (order, at) = (solved.order, solved.at());
+        let (order, at, tier) = (solved.order, solved.at(), solved.way.tier());
         let value = match solved.way {
             Way::Newton(fourier, frequency) => PeriodicSolution::new(fourier, frequency, "newton"),
             Way::Sum(path) => {
@@ -174,7 +174,7 @@ impl Oscillator {
                 PeriodicSolution::new(fourier, path.estimated_frequency(), "expansion")
             }
         };
-        let header = self.header(at, Some(order), "resummation", start);
+        let header = self.header(at, Some(order), tier, start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks: solved.remarks })
     }
 
@@ -224,6 +224,16 @@ pub(super) enum Way {
     Newton(Fourier, Estimated),
     /// By the sum of its series at every phase.
     Sum(Box<Trajectory>),
+}
+
+impl Way {
+    /// How its numbers were computed.
+    pub fn tier(&self) -> &'static str {
+        match self {
+            Self::Newton(..) => "newton",
+            Self::Sum(_) => "resummation",
+        }
+    }
 }
 
 impl Solved {

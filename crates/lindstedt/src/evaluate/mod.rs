@@ -164,6 +164,7 @@ impl Oscillator {
         let start = Instant::now();
         let solved = self.solved(question, harmonics, work)?;
         let (order, at, name) = (solved.order, solved.at(), &self.problem().name);
+        let tier = solved.way.tier();
         let value =
             match solved.way {
                 Way::Newton(series, omega) => {
@@ -178,7 +179,7 @@ impl Oscillator {
                     },
                 )?,
             };
-        let header = self.header(at, Some(order), "resummation", start);
+        let header = self.header(at, Some(order), tier, start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks: solved.remarks })
     }
 

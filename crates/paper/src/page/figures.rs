@@ -149,7 +149,8 @@ fn standing(point: &Point) -> Option<usize> {
 }
 
 /// Marks of the curves in their order: they are told apart without colours.
-const MARKS: [Mark; 4] = [Mark::Disc(4), Mark::Triangle(5), Mark::Cross(4), Mark::Ring(4)];
+const MARKS: [Mark; 5] =
+    [Mark::Disc(4), Mark::Triangle(5), Mark::Cross(4), Mark::Ring(4), Mark::Square(4)];
 
 /// The figure with points that are joined by a line.
 fn curve(figure: Figure, name: &str, colour: Colour, points: &[(f64, f64)]) -> Figure {

@@ -33,6 +33,12 @@ fn units(n: u32) -> i32 {
     (n * FINE) as i32
 }
 
+/// A square around a point.
+fn square(radius: u32, style: ShapeStyle) -> Rectangle<(i32, i32)> {
+    let r = units(radius);
+    Rectangle::new([(-r, -r), (r, r)], style)
+}
+
 /// Figures side by side.
 pub(super) fn svg(figures: &[&Figure]) -> Result<String, FigureError> {
     let Some(first) = figures.first() else { return Err(FigureError::Empty) };
@@ -164,6 +170,9 @@ fn points(chart: &mut Chart<'_, '_>, layer: &Layer, places: &[(f64, f64)]) -> Dr
         Mark::Cross(r) => {
             chart.draw_series(dots().map(|p| Cross::new(p, units(r), stroke(colour, 2))))?;
         }
+        Mark::Square(r) => {
+            chart.draw_series(dots().map(|p| EmptyElement::at(p) + square(r, filled)))?;
+        }
     }
     let labels = layer.labels.iter().zip(places).filter(|(_, p)| finite(p));
     let font = ("sans-serif", 11 * FINE);
@@ -258,6 +267,9 @@ fn legend(area: &Area<'_>, entries: &[Entry], per_row: usize) -> Drawn {
                 area.draw(&TriangleMarker::new(middle, units(5), rgb(colour).filled()))?;
             }
             Mark::Cross(_) => area.draw(&Cross::new(middle, units(4), stroke(colour, 2)))?,
+            Mark::Square(_) => {
+                area.draw(&(EmptyElement::at(middle) + square(4, rgb(colour).filled())))?;
+            }
         }
     }
     Ok(())

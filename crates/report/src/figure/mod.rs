@@ -54,6 +54,8 @@ pub enum Mark {
     Triangle(u32),
     /// Crosses.
     Cross(u32),
+    /// Filled squares.
+    Square(u32),
 }
 
 /// Points of one kind.
