@@ -30,11 +30,17 @@ fn every_documented_command_is_in_the_net() {
     let known: BTreeSet<String> = lines().into_iter().map(|line| line.command).collect();
     let mut pages = vec![root().join("README.md")];
     pages_below(&root().join("docs/src"), &mut pages);
+    let examples = std::fs::read_dir(root().join("docs/examples")).unwrap();
+    pages.extend(examples.map(|entry| entry.unwrap().path()));
     let texts = pages.iter().map(|page| std::fs::read_to_string(page).unwrap());
     let documented: BTreeSet<String> = texts
         .flat_map(|text| {
-            let commands = text.lines().filter_map(|line| line.strip_prefix("$ lindstedt "));
-            commands.map(without_format).collect::<Vec<_>>()
+            // In the comment of an example it follows a colon.
+            let command = |line: &str| {
+                let line = line.strip_prefix("$ ").or_else(|| line.split(": ").nth(1))?;
+                line.strip_prefix("lindstedt ").map(without_format)
+            };
+            text.lines().filter_map(command).collect::<Vec<_>>()
         })
         .collect();
     let missing: Vec<&String> = documented.difference(&known).collect();

@@ -72,6 +72,26 @@ impl<'a> Force<'a> {
     }
 }
 
+/// z_j' = i nu_j z_j + sum eps^n f_(j,n): by order from 1 the list of f_(j,n).
+#[derive(Serialize)]
+struct Flow<'a> {
+    amplitudes: &'a [String],
+    frequencies: &'a [String],
+    forcing: &'a str,
+    orders: Object<String, Vec<Vec<Monomial<'a>>>>,
+}
+
+/// The names of the factors of its monomials: z1, zbar1, z2, ... of any number of unknowns, E or E1, E2, ..., symbols.
+fn plain_names(flow: &SlowFlow) -> Vec<String> {
+    let amplitudes = (1..=flow.unknowns()).flat_map(|j| [format!("z{j}"), format!("zbar{j}")]);
+    let others = flow.factors().into_iter().skip(2 * flow.unknowns());
+    let phases = others.enumerate().map(|(n, name)| match n < flow.forces() {
+        true => name.replace('_', ""),
+        false => name,
+    });
+    amplitudes.chain(phases).collect()
+}
+
 fn powers<'a>(names: &'a [String], exponents: &[i32]) -> Object<&'a str, i32> {
     let all = names.iter().map(String::as_str).zip(exponents.iter().copied());
     Object(all.filter(|(_, n)| *n != 0).collect())
@@ -153,7 +173,7 @@ impl Serialize for Sought {
 
 impl Serialize for SlowFlow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let (system, names) = (&self.system, self.factors());
+        let (system, names) = (&self.system, plain_names(self));
         let of_modes =
             |list: &Vec<Rational>| list.iter().map(|q| self.number_of_modes(q)).collect::<Vec<_>>();
         let lists = |orders: &[Vec<Terms>]| -> Vec<Vec<Vec<Monomial<'_>>>> {
@@ -196,7 +216,17 @@ impl Serialize for SlowFlow {
         let beside = system.beside.as_ref().map(|b| (b.symbol.as_str(), b.rate.to_string()));
         map.serialize_entry("beside", &beside.map(|pair| Object(vec![pair])))?;
         map.serialize_entry("symbols", &system.symbols)?;
-        map.serialize_entry("flow", &lists(&self.flow))?;
+        let orders = (1..self.flow.first().map_or(0, Vec::len)).map(|n| {
+            let of = |unknown: &Vec<Terms>| monomials(self, &names, &unknown[n]);
+            (n.to_string(), self.flow.iter().map(of).collect::<Vec<_>>())
+        });
+        let flow = Flow {
+            amplitudes: &names[..2 * self.unknowns()],
+            frequencies: &frequencies,
+            forcing: forces.first().map_or("0", |force| &force.rate),
+            orders: Object(orders.collect()),
+        };
+        map.serialize_entry("slow_flow", &flow)?;
         map.serialize_entry("solution", &lists(&self.solution))?;
         if !self.energy.is_empty() {
             let energy: Vec<_> = self.energy.iter().map(|t| monomials(self, &names, t)).collect();
