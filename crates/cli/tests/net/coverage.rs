@@ -37,7 +37,9 @@ fn every_documented_command_is_in_the_net() {
         .flat_map(|text| {
             // In the comment of an example it follows a colon.
             let command = |line: &str| {
-                let line = line.strip_prefix("$ ").or_else(|| line.split(": ").nth(1))?;
+                let line = line
+                    .strip_prefix("$ ")
+                    .or_else(|| line.strip_prefix("# ")?.split(": ").nth(1))?;
                 line.strip_prefix("lindstedt ").map(without_format)
             };
             text.lines().filter_map(command).collect::<Vec<_>>()
