@@ -77,6 +77,43 @@ fn steady_amplitudes() {
     }
 }
 
+/// Delays 7/4 and 1/3, of which the common unit is small: all five states with proof, amplitudes to O(eps^N) and exponents to
+/// O(eps^(N + 1)). The truth is that of harmonic balance of the equation with the odd harmonics to 15 and of Hill's
+/// determinant about it, in Python: the larger amplitude and the exponent with a positive imaginary part, the smaller one
+/// and the positive exponent.
+#[test]
+fn delays_of_a_small_common_unit() {
+    let equation =
+        "x'' + x + eps*(x^3 + x'/10 - x(t - 7/4)/6) = eps*h*x(t - 1/3)*cos((2 + eps*sigma)*t)";
+    let truth = [
+        ("1/40", [1.0924804838922932, -3.2522469988351e-3, 1.49218117954280e-2]),
+        ("1/80", [1.092413204148088, -1.6380855327640e-3, 7.4935701493237e-3]),
+    ];
+    let small =
+        [[0.24464323863617635, 1.4744707839157e-3], [0.2456961909957723, 7.428120224875e-4]];
+    for order in 1..=4 {
+        let mut errors = [[0.0f64; 2]; 4];
+        for (k, ((eps, large), small)) in truth.into_iter().zip(small).enumerate() {
+            let case = case(equation, &[("eps", eps), ("h", "1"), ("sigma", "1/2")]);
+            let question = Respond { order: Some(order), ..Respond::default() };
+            let found = case.respond(&question, &Work::default()).unwrap().value;
+            let states = &found.states[0];
+            assert_eq!((states.count, states.count_proved), (5, true), "order {order}, {eps}");
+            let amplitude = |j: usize| states.list[j].amplitudes[0].decimal.parse::<f64>().unwrap();
+            let exponent = |j: usize| states.list[j].exponents[0].map(|part| part.value);
+            errors[0][k] = (amplitude(0) - large[0]).abs();
+            errors[1][k] = (amplitude(2) - small[0]).abs();
+            let [re, im] = exponent(0);
+            errors[2][k] = (re - large[1]).hypot(im.abs() - large[2]);
+            errors[3][k] = (exponent(2)[0] - small[1]).abs();
+        }
+        for (k, [a, b]) in errors.into_iter().enumerate() {
+            let slope = (a / b).log2() - f64::from(u8::from(k > 1));
+            assert!((slope - order as f64).abs() < 0.3, "order {order}: {errors:?}");
+        }
+    }
+}
+
 /// A mode of the frequency sqrt 2 that the force does not meet and the other one drives: the states are near those of 99/70.
 #[test]
 fn irrational_modes() {

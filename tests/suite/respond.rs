@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use lindstedt::grid::Axis;
-use lindstedt::respond::Response;
+use lindstedt::respond::{Response, State};
 use lindstedt::unstable::orbit::{Field, Kind, Request, Start, prove};
-use lindstedt::{Oscillator, Respond, Verify, Work};
+use lindstedt::{Oscillator, Respond, Status, Verify, Work};
 use rug::Rational;
 
 fn ask(equation: &str, values: &[(&str, &str)], question: &Respond) -> Response {
@@ -181,5 +181,128 @@ fn remainders_of_six_resonances() {
             let slope = found.observed_order.unwrap();
             assert!((slope - order as f64 - 1.0).abs() < 0.1, "{equation}, order {order}: {slope}");
         }
+    }
+}
+
+/// Twenty problems, rational, beside irrational modes, with delays, with symbols that have values: the number of their states is
+/// proved for each. Equations, order, number of states.
+const PROVED: [(&str, usize, usize); 20] = [
+    ("x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2", 2, 1),
+    ("x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2", 4, 1),
+    ("x'' + x + eps*(x'/5 + alpha*x^3 + beta*x^2) = eps*F*cos((1 + eps*sigma)*t)", 3, 1),
+    ("x'' + x + eps*(x'/5 + x^3 + 2*x*cos((2 + eps*sigma)*t)) = 0", 2, 3),
+    ("x'' + x + eps*(x'/5 + x^3) = 10*cos((3 + eps)*t)", 2, 1),
+    ("x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t + 1/2)", 2, 1),
+    ("x'' + x + eps*(x'/5 + x^3 + F*x(t - T)/5) = eps*cos((1 + eps*sigma)*t)", 3, 1),
+    ("x'' + x + eps*(x'/5 + x^3 + x(t - pi/3)/5) = eps*cos((1 + eps*sigma)*t)", 3, 1),
+    (
+        "x'' + 2*x + eps*(x'/5 + x^3 + 2*x*y) = 0; y'' + y + eps*y'/5 = eps*cos((1 + eps*sigma)*t)",
+        2,
+        1,
+    ),
+    (
+        "x'' + x + eps*(x' + x^3 + x*y) = eps*cos((1 + eps*sigma)*t); y'' + 2*y + eps*(y' + 4*x^2 + y^3)",
+        1,
+        1,
+    ),
+    (
+        "x'' + x + eps*(x' + x^3 + x*y) = eps*cos((1 + eps*sigma)*t); y'' + 2*y + eps*(y' + 4*x^2 + y^3)",
+        3,
+        1,
+    ),
+    (
+        "x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t); y'' + 3*y + eps*(y'/5 + x*y + x^2)",
+        3,
+        1,
+    ),
+    (
+        "x'' + 2*x - y + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t); y'' + 2*y - x + eps*y'/5",
+        1,
+        3,
+    ),
+    (
+        "x'' + 2*x - y + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t); y'' + 2*y - x + eps*y'/5",
+        2,
+        3,
+    ),
+    (
+        "x'' + 2*x - y + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t); y'' + 2*y - x + eps*y'/5",
+        3,
+        3,
+    ),
+    (
+        "x'' + 2*x - y + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t); y'' + 2*y - x + eps*(y'/5 + x(t - 1)/3)",
+        2,
+        3,
+    ),
+    (
+        "x'' + 2*x - y + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t); y'' + 2*y - x + eps*(y'/5 + x(t - 1)/3)",
+        3,
+        3,
+    ),
+    (
+        "x'' + x + eps*(x'/5 + x^3 + y(t - 1)) = eps*cos((1 + eps*sigma)*t); y'' + 2*y + eps*(y'/5 + y^3)",
+        2,
+        1,
+    ),
+    (
+        "x'' + x + eps*(x'/5 + x^3 + y^2) = eps*cos((1 + eps*sigma)*t); y'' + 3*y + eps*(y'/5 + y^3); z'' + 5*z + eps*(z'/5 + x*z)",
+        2,
+        1,
+    ),
+    (
+        "x'' + x + eps*(x'/5 + alpha*x^3 + y^2) = eps*F*cos((1 + eps*sigma)*t); y'' + 3*y + eps*(y'/5 + y^3); z'' + 5*z + eps*(z'/5 + x*z)",
+        3,
+        1,
+    ),
+];
+
+#[test]
+fn what_can_be_proved_is_said_to_be() {
+    let values = [
+        ("eps", "1/10"),
+        ("sigma", "1/2"),
+        ("alpha", "1"),
+        ("beta", "1/3"),
+        ("F", "1"),
+        ("T", "1"),
+    ];
+    for (equation, order, count) in PROVED {
+        let start = Oscillator::parse(equation).unwrap();
+        let known = start.problem().parameters.iter().map(|card| card.name.to_string());
+        let known: Vec<String> = known.chain(["eps".to_owned()]).collect();
+        let values = values.iter().filter(|(name, _)| known.iter().any(|it| it == name));
+        let values: Vec<_> = values.copied().collect();
+        let found = ask(equation, &values, &to_order(order));
+        let states = &found.states[0];
+        assert_eq!(
+            (states.count, states.count_proved),
+            (count, true),
+            "order {order} of {equation}"
+        );
+        let proved = |state: &State| state.amplitudes.iter().all(|a| a.status == Status::Proved);
+        assert!(states.list.iter().all(proved), "order {order} of {equation}");
+    }
+}
+
+/// A sweep beside an irrational mode, x = q_1 + q_2, y = q_1 - q_2 with the frequencies 1 and sqrt 3: at order one the force
+/// of 1/2 and the damping of 1/10 on the first mode, 3 a^2/8 of the cubic spring shared by the two coordinates,
+/// ((a/20)^2 + (sigma a - 3 a^3/16)^2) = (1/4)^2, of which the folds are the zeros of the derivative by a^2.
+#[test]
+fn sweeps_beside_an_irrational_mode() {
+    let equation =
+        "x'' + 2*x - y + eps*(x'/10 + x^3) = eps*cos((1 + eps*sigma)*t); y'' + 2*y - x + eps*y'/10";
+    let sweep = Some(Axis::parse("sigma=-1..6:60").unwrap());
+    let found = ask(equation, &[("eps", "1/10")], &Respond { sweep, ..to_order(1) });
+    assert!(found.states.iter().all(|states| states.count_proved));
+    assert_eq!(found.folds.len(), 2);
+    for fold in &found.folds {
+        let number = |n: &lindstedt::Number| n.decimal.parse::<f64>().unwrap();
+        let (sigma, r) = (number(&fold.value), number(&fold.amplitudes[0]).powi(2));
+        let off = sigma - 3.0 / 16.0 * r;
+        let curve = (0.0025 + off * off) * r - 1.0 / 16.0;
+        let slope = 0.0025 + off * off - 3.0 / 8.0 * r * off;
+        assert!(curve.abs() < 1e-10 && slope.abs() < 1e-10, "{sigma} {r}: {curve:e} {slope:e}");
+        assert_eq!(number(&fold.amplitudes[1]), 0.0);
     }
 }

@@ -34,11 +34,11 @@ pub(crate) fn decide(
     let saddle_at_zero = stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less);
     // Without a force nothing splits, and a saddle is no reason to think of Melnikov.
     let saddle = !parts.forcing.is_empty()
-        && (saddle_at_zero || has_saddle(rest, values) == Some(true))
         && parts.strong.iter().all(|t| parity(&t.term, false) == Some(Parity::Even))
         && parts.delays.is_empty()
         && parts.forcing.iter().all(|f| f.order > 0)
-        && !parts.impact;
+        && !parts.impact
+        && (saddle_at_zero || has_saddle(rest, values) == Some(true));
     let melnikov = match saddle {
         true => Vec::new(),
         false if parts.forcing.is_empty() => vec![Reason::NoForce],

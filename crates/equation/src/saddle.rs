@@ -24,6 +24,14 @@ pub(crate) fn has_saddle(rest: &Expression, values: &BTreeMap<String, Rational>)
         let x = Float::with_val(53, x);
         terms.iter().try_fold(0.0, |sum, term| Some(sum - term.at_point(&x, values)?.to_f64()))
     };
+    // A multiple of x changes its sign at zero alone.
+    let is_multiple = |term: &&Expression| {
+        let ratio = ((*term).clone() * Expression::DISPLACEMENT.pow(-1)).canonical();
+        !ratio.contains(&Expression::DISPLACEMENT)
+    };
+    if terms.iter().all(is_multiple) {
+        return Some(force(1.0)? > 0.0);
+    }
     let mut before = None;
     for n in -POINTS / 2..=POINTS / 2 {
         // Off the symmetric points, where zeros like to be.
@@ -49,6 +57,7 @@ mod tests {
         assert_eq!(of(x() - x().pow(2)), Some(true));
         assert_eq!(of(x().apply(Function::Sin)), Some(true));
         assert_eq!(of(x() + x().pow(3)), Some(false));
+        assert_eq!(of(x() * Expression::integer(-2)), Some(true));
         assert_eq!(of(x() - Expression::Small * x().pow(3)), Some(false));
         assert_eq!(of(Expression::parameter("k") * x()), None);
         assert_eq!(of(x() + Expression::VELOCITY), None);

@@ -17,9 +17,11 @@ use std::collections::BTreeSet;
 /// The autonomous slow flow.
 #[derive(Clone, Debug)]
 pub struct Rotating {
-    /// w'/eps; its parameters are the symbols of the slow flow, then the small parameter, then, where coefficients are
-    /// enclosed, what each may be off its middle by ([`is_error`]).
+    /// w'/eps; its parameters are the symbols of the slow flow, then the small parameter.
     pub flow: Flow,
+    /// Whether it has every term of the slow flow; one that cannot be told from zero is missing where it would depend on
+    /// the time in this frame.
+    pub whole: bool,
     /// k_{j,1}, k_{j,2}, ...
     pub turns: Vec<Vec<Rational>>,
     /// How many of the k_j the resonances fix, the rank of their relations: where it is less than the number of
@@ -56,34 +58,34 @@ pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Result<Rotating, 
     let rates = system.forces.iter().map(|phase| phase.number());
     let first = first.number().filter(|_| rates.clone().all(|rate| rate.is_some()));
     let first = first.ok_or(NoFrame::NoNumber)?;
-    let relations = Relations::of(slow, order);
+    let relations = Relations::of(slow, &slow.flow, order);
     let free = |nu: &Rational| {
         let mut turn = vec![Rational::new(); slow.forces()];
         turn[0] = Rational::from(nu / &first);
         turn
     };
-    let turns = relations.solved(system.frequencies.iter().map(free).collect());
-    let turns = turns.ok_or(NoFrame::SeveralRates)?;
-    let mut equations: Vec<Vec<ComplexTerm>> =
-        (0..turns.len()).map(|j| equation(slow, j, &turns[j], order)).collect();
-    let errors = match slow.enclosed {
-        Some(_) => with_errors(&mut equations, system.symbols.len() + 1),
-        None => 0,
+    let turns: Vec<_> = system.frequencies.iter().map(free).collect();
+    // What may vanish is resonant, too, but ties no phase.
+    let all = relations.clone().and(Relations::of(slow, &slow.doubtful, order));
+    let (turns, mut whole) = match all.solved(turns.clone()) {
+        Some(turns) => (turns, true),
+        None => (relations.solved(turns).ok_or(NoFrame::SeveralRates)?, false),
     };
-    let errors: Vec<String> = (0..errors).map(|k| format!("{ERROR}{k}")).collect();
-    let symbols = system.symbols.iter().map(String::as_str).chain([small]);
-    let names: Vec<&str> = symbols.chain(errors.iter().map(String::as_str)).collect();
+    whole &= slow.doubtful.is_empty() || relations.combination().is_none();
+    let of = |j| equation(slow, j, &turns[j], (order, whole));
+    let equations: Vec<Vec<ComplexTerm>> = (0..turns.len()).map(of).collect();
+    let names: Vec<&str> = system.symbols.iter().map(String::as_str).chain([small]).collect();
     let backbone = (turns.len() == 1).then(|| backbone(slow, &turns[0], &names, order));
     let (fixed, combination) = (relations.fixed(), relations.combination());
     let flow = Flow::of_complex(&equations, &names);
     let free = relations.weights().zip(<[_; 2]>::try_from(equations).ok());
     let parameters = flow.parameters.clone();
     let free = free.map(|(weights, equations)| FreePhase { equations, weights, parameters });
-    Ok(Rotating { flow, turns, fixed, combination, free, backbone })
+    Ok(Rotating { flow, whole, turns, fixed, combination, free, backbone })
 }
 
 /// What fixes the k_j: every term z^p zbar^q E^m of f_j is a relation (p - q - e_j) k = -m.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Relations {
     /// Independent ones, each free of the first unknown of those before it, and -m.
     rows: Vec<(Vec<Rational>, Vec<Rational>)>,
@@ -94,10 +96,10 @@ struct Relations {
 }
 
 impl Relations {
-    fn of(slow: &SlowFlow, order: usize) -> Self {
+    fn of(slow: &SlowFlow, flow: &[Vec<Terms>], order: usize) -> Self {
         let mut relations = Self::default();
-        for j in 0..slow.unknowns() {
-            for term in slow.flow[j].iter().take(order + 1).skip(1).flatten() {
+        for (j, orders) in flow.iter().enumerate() {
+            for term in orders.iter().take(order + 1).skip(1).flatten() {
                 let (amplitudes, rest) = term.exponents.split_at(2 * slow.unknowns());
                 relations.add(j, amplitudes, &rest[..slow.forces()]);
             }
@@ -105,11 +107,18 @@ impl Relations {
         relations
     }
 
+    /// Both.
+    fn and(mut self, other: Self) -> Self {
+        self.contradictory |= other.contradictory;
+        other.rows.into_iter().for_each(|(row, right)| self.reduce(row, right));
+        self
+    }
+
     fn add(&mut self, j: usize, amplitudes: &[i32], phases: &[i32]) {
         let relation = |(k, pair): (usize, &[i32])| pair[0] - pair[1] - i32::from(k == j);
         let relations = amplitudes.chunks_exact(2).enumerate().map(relation);
-        let mut row: Vec<Rational> = relations.map(Rational::from).collect();
-        let mut right: Vec<Rational> = phases.iter().map(|m| Rational::from(-m)).collect();
+        let row: Vec<Rational> = relations.map(Rational::from).collect();
+        let right: Vec<Rational> = phases.iter().map(|m| Rational::from(-m)).collect();
         let mut tied: BTreeSet<usize> = (0..row.len()).filter(|k| !row[*k].is_zero()).collect();
         if tied.is_empty() {
             self.contradictory |= right.iter().any(|m| !m.is_zero());
@@ -125,6 +134,10 @@ impl Relations {
             apart
         });
         self.groups.push((tied, forced));
+        self.reduce(row, right);
+    }
+
+    fn reduce(&mut self, mut row: Vec<Rational>, mut right: Vec<Rational>) {
         for (known, own) in &self.rows {
             let Some(pivot) = known.iter().position(|x| !x.is_zero()) else { continue };
             let factor = Rational::from(&row[pivot] / &known[pivot]);
@@ -198,55 +211,35 @@ fn detuning<'a>(
     })
 }
 
-fn equation(slow: &SlowFlow, j: usize, turn: &[Rational], order: usize) -> Vec<ComplexTerm> {
+fn equation(
+    slow: &SlowFlow,
+    j: usize,
+    turn: &[Rational],
+    (order, whole): (usize, bool),
+) -> Vec<ComplexTerm> {
     let unknowns = slow.unknowns();
+    let radius = slow.enclosed.map_or(0.0, |enclosed| enclosed.radius);
+    let doubtful = slow.doubtful.get(j).filter(|_| whole);
     let mut terms = Vec::new();
     for n in 1..=order {
-        for term in slow.flow[j].get(n).into_iter().flatten() {
+        let doubtful = doubtful.and_then(|orders| orders.get(n));
+        for term in slow.flow[j].get(n).into_iter().chain(doubtful).flatten() {
             terms.push(ComplexTerm {
                 amplitudes: term.exponents[..2 * unknowns].iter().map(|e| power(*e)).collect(),
                 parameters: parameters(slow, &term.exponents, n),
                 re: term.re.clone(),
                 im: term.im.clone(),
+                radius,
             });
         }
         for (exponents, im) in detuning(slow, turn, n) {
             let mut amplitudes = vec![0; 2 * unknowns];
             amplitudes[2 * j] = 1;
             let parameters = parameters(slow, exponents, n);
-            terms.push(ComplexTerm { amplitudes, parameters, re: Rational::new(), im });
+            terms.push(ComplexTerm { amplitudes, parameters, re: Rational::new(), im, radius });
         }
     }
     terms
-}
-
-/// What the names of errors begin with: no parameter is called so.
-const ERROR: &str = "'error";
-
-/// Whether a parameter of the flow stands for what a coefficient may be off its middle by.
-#[must_use]
-pub fn is_error(name: &str) -> bool {
-    name.starts_with(ERROR)
-}
-
-/// Adds to every coefficient, real and imaginary part, a parameter of its own behind the first so many; their number.
-fn with_errors(equations: &mut [Vec<ComplexTerm>], first: usize) -> usize {
-    let mut count = 0;
-    for equation in equations {
-        let exact = equation.clone();
-        for term in exact {
-            for parts in [[1, 0], [0, 1]] {
-                let mut parameters = term.parameters.clone();
-                parameters.resize(first + count, 0);
-                parameters.push(1);
-                let [re, im] = parts.map(Rational::from);
-                let amplitudes = term.amplitudes.clone();
-                equation.push(ComplexTerm { amplitudes, parameters, re, im });
-                count += 1;
-            }
-        }
-    }
-    count
 }
 
 /// The terms z^(q + 1) zbar^q of f, which do not know the phase of the force, divided by z; their imaginary part.
@@ -265,7 +258,7 @@ fn backbone(slow: &SlowFlow, turn: &[Rational], names: &[&str], order: usize) ->
         }
     }
     let parameters = names.iter().map(|name| (*name).to_owned()).collect();
-    Flow { rows: vec![row], parameters }
+    Flow::of_rows(vec![row], parameters)
 }
 
 /// The response to the forces at order zero of a single unknown and its rate at eta_l = 0, where the symbols have these

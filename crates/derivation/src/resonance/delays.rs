@@ -2,11 +2,12 @@
 //!
 //! Delays whose ratios are rational are whole multiples of one, T_0, and the parts of all rates in one generator g (1, an
 //! irrational root, an independent frequency) those of one number q. So every e^{-i lambda T} is a product of powers of some
-//! W = e^{i q g T_0}, which are constant phases of the algebra: exact for every T, given or not. In what is handed out
-//! cos(q g T_0) and sin(q g T_0) are symbols, with 1 - cos^2 in the place of sin^2, so that equal polynomials are
-//! equal as data; where q g T_0 is a number of quarters of a turn they are numbers.
+//! W = e^{i q g T_0}, which are constant phases of the algebra: exact for every T, given or not. In what is handed out every
+//! product of their powers, e^{i theta}, is cos(theta) + i sin(theta) with these two as symbols, each to the first power:
+//! equal sums are equal as data, and nothing cancels that does not cancel by itself, where powers of cos(q g T_0) would have
+//! coefficients that grow like 2^k with alternating signs. Where theta is a number of quarters of a turn they are numbers.
 
-use super::forces::{divisor, quarters, wave_names};
+use super::forces::{Angles as Named, divisor, named, quarters, wave_names};
 use super::{System, Terms};
 use crate::averaging::constant;
 use lindstedt_algebra::Ring;
@@ -18,7 +19,7 @@ use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::amplitudes::scalars::Scalars;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes, Late, Rates};
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::collections::BTreeMap;
 
 /// A delay: `multiple` times T_0 of the number `base`.
@@ -111,16 +112,6 @@ impl Delays {
         self.open().count()
     }
 
-    /// Their angles.
-    pub(super) fn angles(&self) -> Vec<Expression> {
-        self.open().map(|turn| turn.angle.clone()).collect()
-    }
-
-    /// The names of their cosines and sines.
-    pub(super) fn names(&self) -> Vec<String> {
-        self.open().flat_map(|turn| wave_names(&turn.angle)).collect()
-    }
-
     /// The algebra with the delays; `time` is the value of T. Nothing where that is no polynomial, or where exponents are
     /// beyond what words hold.
     pub(super) fn put_in<S: Scalars>(
@@ -162,38 +153,106 @@ impl Delays {
         Some(product)
     }
 
-    /// Terms with the exponents of the constant phases behind the first `moving`, then those of `symbols` symbols: with those
-    /// of the cosines and sines behind the symbols in their place.
-    pub(super) fn unfolded(&self, terms: Terms, moving: usize, symbols: usize) -> Terms {
+    /// The angles that the terms of an algebra are turned by; the exponents of the constant phases are behind the first
+    /// `moving`.
+    pub(super) fn angles<'a>(
+        &self,
+        terms: impl Iterator<Item = &'a AmplitudeTerm>,
+        moving: usize,
+    ) -> Angles {
         let phases = self.phases();
-        if phases == 0 {
-            return terms;
+        let mut angles = Angles { moving, phases, known: BTreeMap::new(), open: Vec::new() };
+        for term in terms.filter(|_| phases > 0) {
+            let (key, _) = angles.of(term);
+            if angles.known.contains_key(&key) {
+                continue;
+            }
+            let part =
+                |(turn, k): (&Turn, &i32)| Expression::integer(i64::from(*k)) * turn.angle.clone();
+            let sum = Expression::Sum(self.open().zip(&key).map(part).collect());
+            let angle = sum.multiplied_out().unwrap_or(sum).canonical();
+            let turned = match quarters(&angle).map(|n| n.mod_u(4).cast_signed()) {
+                Some(n) => Turned::Quarters(n),
+                None => {
+                    angles.open.push(angle);
+                    Turned::By(angles.open.len() - 1)
+                }
+            };
+            angles.known.insert(key, turned);
+        }
+        angles
+    }
+}
+
+/// What e^{i theta} is.
+#[derive(Clone, Copy)]
+enum Turned {
+    /// i^n.
+    Quarters(i32),
+    /// That of an open angle.
+    By(usize),
+}
+
+/// The angles theta = sum_j k_j theta_j of products of constant phases: of k and -k the one that begins positive.
+pub(super) struct Angles {
+    moving: usize,
+    phases: usize,
+    known: BTreeMap<Vec<i32>, Turned>,
+    open: Vec<Expression>,
+}
+
+impl Angles {
+    /// k or -k, and the sign.
+    fn of(&self, term: &AmplitudeTerm) -> (Vec<i32>, i32) {
+        let turns = &term.exponents[self.moving..self.moving + self.phases];
+        let sign = turns.iter().find(|k| **k != 0).map_or(1, |k| k.signum());
+        (turns.iter().map(|k| sign * k).collect(), sign)
+    }
+
+    /// The names of the cosines and sines of the open ones.
+    pub(super) fn names(&self) -> impl Iterator<Item = String> {
+        self.open.iter().flat_map(wave_names)
+    }
+
+    /// The open ones by these.
+    pub(super) fn named(self) -> Named {
+        named(self.open)
+    }
+
+    /// Terms with the exponents of the constant phases, then those of `symbols` symbols: with those of the cosines and sines
+    /// behind the symbols in their place.
+    pub(super) fn unfold(&self, terms: &mut Terms, symbols: usize) {
+        if self.phases == 0 {
+            return;
         }
         let mut sum: BTreeMap<Vec<i32>, [Rational; 2]> = BTreeMap::new();
-        for AmplitudeTerm { exponents, re, im } in terms {
-            let (first, rest) = exponents.split_at(moving);
-            let (turns, rest) = rest.split_at(phases);
-            let (own, rest) = rest.split_at(symbols);
-            for (wave, [cos, sin]) in product_of_waves(turns) {
-                let key = [first, own, &wave, rest].concat();
-                let entry = sum.entry(key).or_default();
-                entry[0] += Rational::from(&re * &cos) - Rational::from(&im * &sin);
-                entry[1] += Rational::from(&re * &sin) + Rational::from(&im * &cos);
+        for term in terms.iter() {
+            let (key, sign) = self.of(term);
+            let (first, rest) = term.exponents.split_at(self.moving);
+            let (own, rest) = rest[self.phases..].split_at(symbols);
+            let mut add = |place: Option<usize>, quarters: i32| {
+                let mut wave = vec![0; 2 * self.open.len()];
+                place.into_iter().for_each(|place| wave[place] = 1);
+                let (re, im) = (&term.re, &term.im);
+                let turned = match quarters.rem_euclid(4) {
+                    0 => [re.clone(), im.clone()],
+                    1 => [Rational::from(-im), re.clone()],
+                    2 => [Rational::from(-re), Rational::from(-im)],
+                    _ => [im.clone(), Rational::from(-re)],
+                };
+                let entry = sum.entry([first, own, &wave, rest].concat()).or_default();
+                entry.iter_mut().zip(turned).for_each(|(sum, part)| *sum += part);
+            };
+            match self.known.get(&key).copied().unwrap_or(Turned::Quarters(0)) {
+                Turned::Quarters(n) => add(None, sign * n),
+                Turned::By(k) => {
+                    add(Some(2 * k), 0);
+                    add(Some(2 * k + 1), sign);
+                }
             }
         }
         let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
-        kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
-    }
-
-    /// A bound of what [`Self::unfolded`] makes of an error of every coefficient, as its multiple: the absolute values of the
-    /// coefficients of cos k theta and sin k theta add up to less than 3^k.
-    pub(super) fn growth(&self, terms: &Terms, moving: usize) -> f64 {
-        let phases = self.phases();
-        let size = |term: &AmplitudeTerm| -> f64 {
-            let turns = term.exponents.iter().skip(moving).take(phases);
-            turns.map(|k| 3f64.powi(k.abs().min(300))).product()
-        };
-        if phases == 0 { 1.0 } else { terms.iter().map(size).sum::<f64>().max(1.0) }
+        *terms = kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect();
     }
 }
 
@@ -201,10 +260,7 @@ impl System {
     /// The angle phi of a symbol cos(phi) or sin(phi) and whether it is the sine; nothing for another symbol.
     #[must_use]
     pub fn angle(&self, symbol: &str) -> Option<(&Expression, bool)> {
-        self.angles.iter().find_map(|angle| {
-            let [cos, sin] = wave_names(angle);
-            (symbol == cos || symbol == sin).then_some((angle, symbol == sin))
-        })
+        self.angles.get(symbol).map(|(angle, sine)| (angle, *sine))
     }
 
     /// The value of a symbol cos(phi) or sin(phi); nothing for another symbol, or where a name in phi has no value.
@@ -228,56 +284,4 @@ impl System {
         let angle = constant(&ring, angle, &|name| value(name).map(Enclosure))?.0;
         Some(if sine { balls.sin(&angle) } else { balls.cos(&angle) })
     }
-}
-
-/// e^{i sum k_j theta_j} as a polynomial in c_1, s_1, c_2, ..., no s_j squared: exponents with real and imaginary parts.
-fn product_of_waves(turns: &[i32]) -> BTreeMap<Vec<i32>, [Integer; 2]> {
-    let mut product = BTreeMap::from([(Vec::new(), [Integer::from(1), Integer::new()])]);
-    for k in turns {
-        let [even, odd] = wave(*k);
-        let mut longer: BTreeMap<Vec<i32>, [Integer; 2]> = BTreeMap::new();
-        for (known, [re, im]) in &product {
-            let lists = [(0, &even), (1, &odd)].into_iter();
-            for (sine, power, c) in
-                lists.flat_map(|(sine, list)| (0..).zip(list).map(move |(n, c)| (sine, n, c)))
-            {
-                let key = known.iter().copied().chain([power, sine]).collect();
-                let part = longer.entry(key).or_default();
-                // i s c^n.
-                let own = [Integer::from(re * c), Integer::from(im * c)];
-                let own = if sine == 1 {
-                    let [a, b] = own;
-                    [-b, a]
-                } else {
-                    own
-                };
-                part.iter_mut().zip(own).for_each(|(sum, c)| *sum += c);
-            }
-        }
-        longer.retain(|_, c| c.iter().any(|c| !c.is_zero()));
-        product = longer;
-    }
-    product
-}
-
-/// A(c) and B(c) of (c + i s)^k = A + i s B: e^{i (k+1) theta} is (c A - (1 - c^2) B) + i s (A + c B).
-fn wave(k: i32) -> [Vec<Integer>; 2] {
-    let (mut even, mut odd) = (vec![Integer::from(1)], Vec::new());
-    let add = |sum: &mut Vec<Integer>, list: &[Integer], raised: usize, sign: i32| {
-        let length = sum.len().max(list.len() + raised);
-        sum.resize(length, Integer::new());
-        sum[raised..].iter_mut().zip(list).for_each(|(sum, c)| *sum += Integer::from(c * sign));
-    };
-    for _ in 0..k.unsigned_abs() {
-        let (mut next, mut after) = (Vec::new(), even.clone());
-        add(&mut next, &even, 1, 1);
-        add(&mut next, &odd, 0, -1);
-        add(&mut next, &odd, 2, 1);
-        add(&mut after, &odd, 1, 1);
-        (even, odd) = (next, after);
-    }
-    if k < 0 {
-        odd.iter_mut().for_each(|c| *c = Integer::from(-&*c));
-    }
-    [even, odd]
 }

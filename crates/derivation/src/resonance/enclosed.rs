@@ -5,12 +5,11 @@
 //! decided exactly; those of [`super::algebraic`] are taken to be independent. What is divided by is enclosed; a divisor that cannot be told from zero ends the derivation.
 
 use super::algebraic::{Enclosed as Modes, middles};
-use super::flow::Job;
+use super::flow::{Job, Run};
 use super::print::is_short;
 use super::{Enclosed, ResonanceError, SlowFlow, Terms};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
-use lindstedt_algebra::AmplitudeAlgebra;
 use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
@@ -84,15 +83,17 @@ pub(super) fn derived(
     let other = |name: &str| named.get(name).map(|ball| Enclosure((*ball).clone()));
     let run = job.run(scalars, (rates, &named_roots), &other, observer)?;
     let radius = Cell::new(0.0);
-    let growth = Cell::new(1.0f64);
-    let moving = 2 * run.algebra.unknowns() + run.algebra.forces();
+    // Those of so many words may be added, where delays turn them by the same angle, and real parts to imaginary ones.
+    let longest = Cell::new(2usize);
     let terms = |f: &Element| {
         let terms = read(&run.algebra, f, &radius);
-        growth.set(growth.get().max(run.delays.growth(&terms, moving)));
+        longest.set(longest.get().max(terms.len()));
         terms
     };
     let mut flow = job.finished(&run, &terms);
-    radius.set(radius.get() * growth.get());
+    if run.delays.any() {
+        radius.set(radius.get() * longest.get() as f64);
+    }
     let largest = run.residual.iter().flat_map(|f| parts(&run.algebra, f));
     let residual = largest.map(|ball| upward(&ball.abs_upper())).fold(0.0, f64::max);
     // With the digits of the other coefficients, and within their radius.
@@ -109,10 +110,40 @@ pub(super) fn derived(
         flow.system.squares = middles(&modes.squares);
         flow.system.shapes = Some(modes.shapes.iter().map(|row| middles(row)).collect());
     }
-    let mut coefficients = run.found.flow.iter().flatten().flat_map(|f| parts(&run.algebra, f));
-    let leaves_out = coefficients.any(|ball| ball.contains_zero() && ball.abs_upper() > 0);
-    flow.enclosed = Some(Enclosed { radius: radius.get(), residual, digits, leaves_out });
+    flow.doubtful = doubtful_terms(job, &run, &flow);
+    flow.enclosed = Some(Enclosed { radius: radius.get(), residual, digits });
     Ok(flow)
+}
+
+/// [`SlowFlow::doubtful`].
+fn doubtful_terms(job: &Job<'_>, run: &Run<Over<BallRing>>, flow: &SlowFlow) -> Vec<Vec<Terms>> {
+    let kept = flow.first_symbol() + job.system.symbols.len();
+    let own = |mut exponents: Vec<i32>| {
+        exponents.drain(flow.first_symbol()..flow.first_symbol() + run.delays.phases());
+        exponents.truncate(kept);
+        exponents.resize(flow.first_symbol() + flow.system.symbols.len(), 0);
+        exponents
+    };
+    let terms = |f: &Element| -> Terms {
+        let zero = |exponents| AmplitudeTerm { exponents, re: 0.into(), im: 0.into() };
+        doubtful(&run.algebra, f).map(own).map(zero).collect()
+    };
+    let lists = run.found.flow.iter().map(|list| list.iter().map(&terms).collect());
+    let lists: Vec<Vec<Terms>> = lists.collect();
+    let any = lists.iter().flatten().any(|terms| !terms.is_empty());
+    if any { lists } else { Vec::new() }
+}
+
+/// What [`read`] leaves out though it may not vanish: the exponents.
+fn doubtful(
+    algebra: &Amplitudes<Over<BallRing>>,
+    f: &Element,
+) -> impl Iterator<Item = Vec<i32>> + use<> {
+    let all = algebra.terms_as(f, &|e: &Enclosure, _: &Integer| e.0.clone());
+    let left = |parts: &[Ball; 2]| {
+        parts.iter().all(Ball::contains_zero) && parts.iter().any(|ball| ball.abs_upper() > 0)
+    };
+    all.into_iter().filter(move |(_, parts)| left(parts)).map(|(exponents, _)| exponents)
 }
 
 fn upward(x: &Float) -> f64 {

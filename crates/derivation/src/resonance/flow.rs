@@ -190,27 +190,33 @@ impl Job<'_> {
         let Run { algebra, delays, found, checked, energy, .. } = run;
         let mut system = self.system.clone();
         let (moving, own) = (algebra.unknowns() * 2 + algebra.forces(), system.symbols.len());
-        let terms = |f: &Element<S>| delays.unfolded(terms(f), moving, own);
-        system.symbols.extend(delays.names());
-        system.angles.extend(delays.angles());
         let lists = |lists: &[Vec<Element<S>>]| -> Vec<Vec<Terms>> {
-            lists.iter().map(|list| list.iter().map(&terms).collect()).collect()
+            lists.iter().map(|list| list.iter().map(terms).collect()).collect()
         };
-        let mut flow = lists(&found.flow);
+        let [mut flow, mut solution, mut detuning] =
+            [&found.flow, &found.solution, &found.detuning].map(|all| lists(all));
         for (j, list) in flow.iter_mut().enumerate() {
             list[0] = terms(&algebra.by_time(&algebra.amplitude(j)));
         }
+        let all = || [&flow, &solution, &detuning].into_iter().flatten().flatten().flatten();
+        let angles = delays.angles(all(), moving);
+        for list in [&mut flow, &mut solution, &mut detuning].into_iter().flatten().flatten() {
+            angles.unfold(list, own);
+        }
+        system.symbols.extend(angles.names());
+        system.angles.extend(angles.named());
         SlowFlow {
             problem: self.problem.clone(),
             system,
             order: found.order(),
             checked_orders: *checked,
             flow,
-            solution: lists(&found.solution),
-            detuning: lists(&found.detuning),
+            solution,
+            detuning,
             nearest: found.nearest.clone(),
-            energy: energy.iter().map(&terms).collect(),
+            energy: energy.iter().map(terms).collect(),
             enclosed: None,
+            doubtful: Vec::new(),
         }
     }
 }

@@ -8,6 +8,7 @@ use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::{Integer, Rational};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 /// The rate of an angle, order by order in the small parameter.
 type Rate = Vec<Expression>;
@@ -178,7 +179,7 @@ pub(super) struct InPhases {
     pub phases: Vec<Phase>,
     pub equations: Vec<Expression>,
     /// The phi by which forces are ahead of their phase, which stay as constants cos(phi) and sin(phi).
-    pub angles: Vec<Expression>,
+    pub angles: Angles,
 }
 
 /// The phases of the forces, and the equations in them.
@@ -217,7 +218,7 @@ pub(super) fn phases(
         Some(ahead_of(*function, angle, ahead))
     };
     let equations = equations.iter().map(|e| e.map(&rewritten)).collect();
-    Ok(InPhases { phases, equations, angles: angles.into_inner() })
+    Ok(InPhases { phases, equations, angles: named(angles.into_inner()) })
 }
 
 /// A function of angle + ahead: cos(angle) cos(ahead) - sin(angle) sin(ahead), or the sine.
@@ -247,6 +248,18 @@ fn turned(ahead: &Expression) -> [Expression; 2] {
 pub(super) fn wave_names(angle: &Expression) -> [String; 2] {
     [Function::Cos, Function::Sin]
         .map(|function| angle.clone().apply(function).print("eps", Style::Text))
+}
+
+/// By the names of cosine and sine: a constant angle, and whether it is the sine.
+pub(super) type Angles = BTreeMap<String, (Expression, bool)>;
+
+/// The names of the cosines and sines of constant angles.
+pub(super) fn named(angles: impl IntoIterator<Item = Expression>) -> Angles {
+    let of = |angle: Expression| {
+        let [cos, sin] = wave_names(&angle);
+        [(cos, (angle.clone(), false)), (sin, (angle, true))]
+    };
+    angles.into_iter().flat_map(of).collect()
 }
 
 /// So many quarters of a turn, where a constant angle is a whole number of them.

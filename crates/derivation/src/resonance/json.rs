@@ -97,6 +97,12 @@ fn powers<'a>(names: &'a [String], exponents: &[i32]) -> Object<&'a str, i32> {
     Object(all.filter(|(_, n)| *n != 0).collect())
 }
 
+#[derive(Serialize)]
+struct Invariant<'a> {
+    form: Vec<Monomial<'a>>,
+    orders: usize,
+}
+
 fn monomials<'a>(flow: &SlowFlow, names: &'a [String], terms: &Terms) -> Vec<Monomial<'a>> {
     let one = |t: &AmplitudeTerm| Monomial {
         powers: powers(names, &t.exponents),
@@ -231,6 +237,11 @@ impl Serialize for SlowFlow {
         if !self.energy.is_empty() {
             let energy: Vec<_> = self.energy.iter().map(|t| monomials(self, &names, t)).collect();
             map.serialize_entry("energy", &energy)?;
+            let forms = self.quadratic_invariants().into_iter().map(|form| {
+                let terms = monomials(self, &names, &form.terms);
+                Invariant { form: terms, orders: form.orders }
+            });
+            map.serialize_entry("quadratic_invariants", &forms.collect::<Vec<_>>())?;
         }
         if let Some(Polar { slow, amplitude, phase }) = self.polar() {
             map.serialize_entry("slow_phase", &slow)?;

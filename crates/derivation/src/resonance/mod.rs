@@ -18,6 +18,7 @@ mod enclosed;
 mod error;
 mod flow;
 mod forces;
+mod invariants;
 mod json;
 mod modes;
 mod motion;
@@ -32,6 +33,7 @@ mod system;
 pub use algebraic::AlgebraicModes;
 pub use error::ResonanceError;
 pub use forces::Phase;
+pub use invariants::QuadraticInvariant;
 pub use motion::Motion;
 pub use normal_mode::{NormalMode, normal_mode};
 pub use polar::{Polar, PolarTerm};
@@ -100,6 +102,9 @@ pub struct SlowFlow {
     pub energy: Vec<Terms>,
     /// Where frequencies are irrational: what the coefficients are known within. Those given are in the middle.
     pub enclosed: Option<Enclosed>,
+    /// Terms of f_{j,n} at `[j][n]` that cannot be told from zero and are not in `flow`: their coefficients, 0, are known
+    /// within the same; empty where there are none.
+    pub doubtful: Vec<Vec<Terms>>,
 }
 
 /// Enclosures of the coefficients of a slow flow.
@@ -112,8 +117,6 @@ pub struct Enclosed {
     pub residual: f64,
     /// Digits that are printed.
     pub digits: usize,
-    /// Whether coefficients of the flow are left out because they cannot be told from zero.
-    pub leaves_out: bool,
 }
 
 impl SlowFlow {

@@ -65,7 +65,7 @@ pub(super) fn spectrum(mass: &Matrix, stiffness: &Matrix) -> Result<Spectrum, Re
     let mut distinct = squares.clone();
     distinct.dedup();
     for square in &distinct {
-        columns.extend(kernel(&matrix, square));
+        columns.extend(eigenvectors(&matrix, square));
     }
     if columns.len() != n {
         return Err(ResonanceError::NotDiagonalisable);
@@ -120,12 +120,16 @@ pub(super) fn inverted(matrix: &Matrix) -> Option<Matrix> {
     (pivots.len() == n).then(|| rows.into_iter().map(|row| row[n..].to_vec()).collect())
 }
 
-/// A basis of the kernel of matrix - lambda, each vector with 1 in its own free column.
-fn kernel(matrix: &Matrix, lambda: &Rational) -> Vec<Vec<Rational>> {
-    let n = matrix.len();
+/// A basis of the vectors v with matrix v = lambda v.
+fn eigenvectors(matrix: &Matrix, lambda: &Rational) -> Vec<Vec<Rational>> {
     let mut shifted = matrix.clone();
-    (0..n).for_each(|i| shifted[i][i] -= lambda);
-    let (rows, pivots) = reduced(shifted, n);
+    (0..matrix.len()).for_each(|i| shifted[i][i] -= lambda);
+    kernel(shifted, matrix.len())
+}
+
+/// A basis of the kernel of a matrix with n columns, each vector with 1 in its first place that is not zero.
+pub(super) fn kernel(matrix: Matrix, n: usize) -> Vec<Vec<Rational>> {
+    let (rows, pivots) = reduced(matrix, n);
     let vector = |free: usize| {
         let mut vector = vec![Rational::new(); n];
         vector[free] = Rational::from(1);

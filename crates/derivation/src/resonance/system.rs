@@ -1,7 +1,9 @@
 //! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
 
 use super::algebraic::{AlgebraicModes, Entry};
-use super::forces::{InPhases, Phase, harmonic, is_internal, is_wave, leading_rates, near, phases};
+use super::forces::{
+    Angles, InPhases, Phase, harmonic, is_internal, is_wave, leading_rates, near, phases,
+};
 use super::modes::{Matrix, Spectrum, inverted, modes_refused, spectrum};
 use super::{Names, ResonanceError};
 use crate::error::DerivationError as Error;
@@ -32,9 +34,9 @@ pub struct System {
     pub shapes: Option<Matrix>,
     /// Where squares or shapes are irrational: what their numbers here are beside.
     pub algebraic: Option<AlgebraicModes>,
-    /// Constant angles whose cosines and sines are among the symbols: what forces are ahead of their phase, and what
-    /// delays turn phases by.
-    pub angles: Vec<Expression>,
+    /// The symbols that are cosines and sines of constant angles, with the angle and whether it is the sine: what forces
+    /// are ahead of their phase, and what delays turn phases by.
+    pub angles: BTreeMap<String, (Expression, bool)>,
     /// The values that were put in.
     pub bound: BTreeMap<String, Rational>,
     /// The frequency that was given where it lies beside a resonance, and the name of its detuning.
@@ -136,7 +138,7 @@ pub(super) struct Prepared {
     pub equations: Vec<Expression>,
     pub forces: Vec<Phase>,
     pub independent: Vec<String>,
-    pub angles: Vec<Expression>,
+    pub angles: Angles,
     pub mass: Matrix,
     pub stiffness: Matrix,
     pub bound: BTreeMap<String, Rational>,

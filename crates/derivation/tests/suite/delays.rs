@@ -6,7 +6,9 @@ use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::resonance::{SlowFlow, slow_flow};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
+use lindstedt_phase::amplitudes::AmplitudeTerm;
 use lindstedt_problem_file::ProblemFile;
+use rug::Rational;
 use std::collections::BTreeMap;
 
 /// A complex number.
@@ -100,7 +102,8 @@ fn agrees(
 #[test]
 fn one_unknown() {
     let found = flow(&["x'' + x + eps*(k*x(t - T) + x'(t - T/2))"], 5, &[]);
-    assert_eq!(found.system.symbols, ["T", "k", "cos(1/2*T)", "sin(1/2*T)"]);
+    let first = ["T", "k", "cos(1/2*T)", "sin(1/2*T)", "cos(T)", "sin(T)"];
+    assert_eq!(found.system.symbols[..6], first);
     let (k, delay) = (0.7, 1.3);
     let values = BTreeMap::from([("k", k), ("T", delay)]);
     agrees(&found, 0, &values, &|s, small| {
@@ -145,4 +148,36 @@ fn quarters_of_a_turn() {
     assert_eq!(written.flow, given.flow);
     let first: Vec<_> = written.flow[0][1].iter().map(|t| t.im.to_string()).collect();
     assert!(first.contains(&"-1/2".to_owned()), "{first:?}");
+    // A quarter: f_1 = (i/2) k e^(-i pi/2) z = (k/2) z.
+    let quarter = flow(&["x'' + x + eps*k*x(t - pi/2)"], 1, &[]);
+    let parts: Vec<_> = quarter.flow[0][1].iter().map(|t| (t.re.clone(), t.im.clone())).collect();
+    assert_eq!(parts, [(Rational::from((1, 2)), Rational::new())]);
+    // Three times a third of a turn.
+    let common = flow(&["x'' + x + eps*(x(t - pi/3) + k*x(t - pi))"], 1, &[]);
+    assert_eq!(common.system.symbols, ["k", "pi", "cos(1/3*pi)", "sin(1/3*pi)"]);
+    assert_eq!(common.flow[0][1].iter().filter(|t| t.exponents[3] == 1).count(), 1);
+}
+
+/// Delays 7/4 and 1/3 have the common unit 1/12: each turns by an angle of its own, not by the powers 21 and 4 of one.
+/// Order one by hand: -g_1 = k x(t - 7/4) + h x(t - 1/3), f_1 = (i/2) (k e^(-7i/4) + h e^(-i/3)) z.
+#[test]
+fn a_small_common_unit() {
+    let found = flow(&["x'' + x + eps*(k*x(t - 7/4) + h*x(t - 1/3))"], 1, &[]);
+    let waves = ["cos(1/3)", "sin(1/3)", "cos(7/4)", "sin(7/4)"];
+    assert_eq!(found.system.symbols, [&["h", "k"][..], &waves].concat());
+    let parts = |term: &AmplitudeTerm| {
+        let of = |q: &Rational| q.to_string();
+        (term.exponents[3..].to_vec(), [of(&term.re), of(&term.im)])
+    };
+    let read: BTreeMap<_, _> = found.flow[0][1].iter().map(parts).collect();
+    let mut known = BTreeMap::new();
+    for (k, [re, im]) in [["0", "1/2"], ["1/2", "0"]].into_iter().enumerate() {
+        for delay in [0, 1] {
+            let mut exponents = vec![0; 6];
+            exponents[delay] = 1;
+            exponents[2 + 2 * delay + k] = 1;
+            known.insert(exponents, [re.to_owned(), im.to_owned()]);
+        }
+    }
+    assert_eq!(read, known);
 }

@@ -499,6 +499,49 @@ fn energy_is_conserved() {
     assert_eq!(flow("x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x", 2, &[]).energy.len(), 3);
 }
 
+/// 2 Re(zbar_j f_j) by hand: of 1:2 through V = eps x^2 y |z_1|^2 + 4 |z_2|^2, of 1:3 through V = eps x^3 y |z_1|^2 + 9 |z_2|^2,
+/// the weights of the energy at order zero; of 1:2 with a third unknown without a resonance two. Damping keeps none.
+#[test]
+fn quadratic_invariants() {
+    let forms = |equation: &str, order: usize| -> Vec<(Named, usize)> {
+        let found = flow(equation, order, &[]);
+        let list = found.quadratic_invariants();
+        list.iter().map(|form| (named(&found, &form.terms), form.orders)).collect()
+    };
+    let pair = "x'' + x + 2*eps*x*y + eps*al*x^3; y'' + 4*y + eps*x^2";
+    let known = by_hand(&["1 z1 zbar1", "4 z2 zbar2"]);
+    assert_eq!(forms(pair, 1), [(known.clone(), 1)]);
+    let third = format!("{pair}; w'' + 2*w");
+    assert!(flow(&third, 1, &[]).quadratic_invariants().is_empty());
+    let third = format!("{pair}; w'' + 25*w + eps*w^3");
+    assert_eq!(forms(&third, 1), [(known, 1), (by_hand(&["1 z3 zbar3"]), 1)]);
+    let known = by_hand(&["1 z1 zbar1", "9 z2 zbar2"]);
+    assert_eq!(forms("x'' + x + 3*eps*x^2*y; y'' + 9*y + eps*x^3", 1), [(known, 1)]);
+    assert!(forms("x'' + x + eps*(x' + 2*x*y); y'' + 4*y + eps*x^2", 1).is_empty());
+    // Without a resonance every square is kept, to all orders.
+    let apart = forms("x'' + x + 2*eps*x*y^2; y'' + 49/25*y + 2*eps*x^2*y", 2);
+    assert_eq!(apart.iter().map(|(_, orders)| *orders).collect::<Vec<_>>(), [2, 2]);
+    // The derivative along f_1, put together from the terms that are printed.
+    let found = flow(pair, 1, &[]);
+    let mut sum = Named::new();
+    for (j, weight) in [(0, 1), (1, 4)] {
+        for term in &found.flow[j][1] {
+            let mut word = term.clone();
+            word.exponents[2 * j + 1] += 1;
+            let mut other = word.clone();
+            (0..2).for_each(|k| other.exponents.swap(2 * k, 2 * k + 1));
+            other.im *= -1;
+            for (key, [re, im]) in named(&found, &[word]).into_iter().chain(named(&found, &[other]))
+            {
+                let entry = sum.entry(key).or_default();
+                entry[0] += re * weight;
+                entry[1] += im * weight;
+            }
+        }
+    }
+    assert!(!sum.is_empty() && sum.values().flatten().all(Rational::is_zero));
+}
+
 /// Refusals speak of the names that were written, and of the memory that was allowed.
 #[test]
 fn names_and_memory_of_the_user() {

@@ -131,7 +131,7 @@ impl Oscillator {
         if undecided > 0 {
             let place = if value.parameter.is_some() { "at a value searched " } else { "" };
             remarks.push(Remark(format!(
-                "{place}the number of steady states is not decided: a double one, or too many boxes"
+                "{place}the number of steady states is not decided: some cannot be told apart within rounding, or too many boxes"
             )));
         }
         let combination = subject.rotating.combination.as_ref();
@@ -179,7 +179,7 @@ impl Subject<'_> {
         let values = self.values([None, None]);
         let (reach, complete) = self.reach(std::slice::from_ref(&values))?;
         let system = self.rotating.flow.system(&values);
-        let found = steady::all_zeros(&system, &self.region(reach), &self.limits(reach));
+        let found = steady::all_states(&self.rotating.flow, &values, reach, &self.limits(reach));
         let found = found.ok_or_else(not_determined)?;
         let mut response = self.empty(reach, complete);
         let mut states = self.shown_states(None, &system, &found).ok_or(Error::NoValue)?;

@@ -8,7 +8,7 @@ use crate::motion::Harmonics;
 use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Oscillator, Remark, SlowFlow, Work};
 use lindstedt_equation::Expression;
-use lindstedt_evaluation::rotating::{NoFrame, Rotating, forced_part, is_error, rotating};
+use lindstedt_evaluation::rotating::{NoFrame, Rotating, forced_part, rotating};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::interval::Interval;
 use lindstedt_orbit::steady::{self, Course, Limits, System, Value, all_zeros, bound, follow};
@@ -91,8 +91,11 @@ impl<'a> Subject<'a> {
         {
             return Err(no_part(name));
         }
-        has_numbers(oscillator, &slow, question)?;
+        has_numbers(oscillator, &slow)?;
         let rotating = rotating(&slow, &small, order).map_err(no_frame)?;
+        if !rotating.whole && question.sweep.is_some() {
+            return Err(not_whole());
+        }
         if rotating.fixed == 0 {
             return Err(uncoupled(order));
         }
@@ -143,7 +146,7 @@ impl<'a> Subject<'a> {
     /// What is said of coefficients that are enclosed.
     pub(super) fn enclosed(&self) -> Option<Remark> {
         let enclosed = self.slow.enclosed.as_ref()?;
-        let left = match enclosed.leaves_out {
+        let left = match !self.is_whole() {
             true => {
                 ", but for those that cannot be told from zero, which are left out: their number is estimated"
             }
@@ -157,17 +160,11 @@ impl<'a> Subject<'a> {
 
     /// Whether what is found of the flow is found of the whole one.
     pub(super) fn is_whole(&self) -> bool {
-        self.slow.enclosed.as_ref().is_none_or(|enclosed| !enclosed.leaves_out)
+        self.rotating.whole
     }
 
     pub(super) fn tier(&self) -> &'static str {
         if self.slow.enclosed.is_some() { "certified" } else { "exact" }
-    }
-
-    /// What a coefficient may be off its middle by.
-    fn error(&self) -> Value {
-        let radius = self.slow.enclosed.as_ref().map_or(0.0, |enclosed| enclosed.radius);
-        Value::Within(Interval::new(-radius, radius))
     }
 
     /// The value of a symbol cos(phi) or sin(phi).
@@ -193,7 +190,6 @@ impl<'a> Subject<'a> {
         let value = |name: &String| match place(name) {
             Some(place) => varying[place].map(Value::from),
             None if **name == **small => self.small.clone().map(Value::Rational),
-            None if is_error(name) => Some(self.error()),
             None => detuning(name).or_else(|| known(name)),
         };
         self.rotating.flow.parameters.iter().map(value).collect()
@@ -253,7 +249,9 @@ impl<'a> Subject<'a> {
             Some(amplitude) => whole.map_or(amplitude / 2.0, |r| (ROOM * r).min(amplitude / 2.0)),
             None => {
                 let small = self.oscillator.problem().small.to_string();
-                let first = rotating(&self.slow, &small, 1).map_err(no_frame)?;
+                // A box to look in: terms of high degree that are almost zero bound nothing.
+                let sure = SlowFlow { doubtful: Vec::new(), ..self.slow.clone() };
+                let first = rotating(&sure, &small, 1).map_err(no_frame)?;
                 let bound = largest(&first.flow).ok_or_else(|| {
                     let message = "no bound of the steady states follows from the first order";
                     Refused::undecided("box", message, "--box AMPLITUDE says how far to look")
@@ -264,10 +262,6 @@ impl<'a> Subject<'a> {
         Ok((reach, whole.is_some_and(|whole| whole <= reach)))
     }
 
-    pub(super) fn region(&self, reach: f64) -> Vec<Interval> {
-        vec![Interval::new(-reach, reach); self.rotating.flow.unknowns()]
-    }
-
     pub(super) fn limits(&self, reach: f64) -> Limits {
         Limits { modulus: Some(reach), stop: self.work.stop.clone(), ..Limits::default() }
     }
@@ -276,7 +270,7 @@ impl<'a> Subject<'a> {
         Response {
             parameter: None,
             coordinates: self.slow.coordinates(),
-            turns: self.rotating.turns.iter().map(|turn| listed(turn)).collect(),
+            turns: self.rotating.turns.iter().map(|turn| self.listed(turn)).collect(),
             amplitude_limit: Estimate { value: 2.0 * reach },
             complete,
             branches: Vec::new(),
@@ -292,6 +286,15 @@ impl<'a> Subject<'a> {
             followed: None,
             leads_to: None,
         }
+    }
+
+    /// k_1, k_2, ...; those of an irrational frequency are in the middle of an enclosure.
+    fn listed(&self, turn: &[Rational]) -> String {
+        let shown = |k: &Rational| match k.denom().significant_bits() > 64 {
+            true => self.slow.size(k),
+            false => k.to_string(),
+        };
+        turn.iter().map(shown).collect::<Vec<_>>().join(", ")
     }
 
     /// The oscillator, and the harmonics of its motion that are those of the slow flow, of a single force.
@@ -412,13 +415,16 @@ fn no_frame(why: NoFrame) -> Error {
     Refused::no_answer("no-response", message, hint).into()
 }
 
-/// Refuses a slow flow that depends on frequencies without a value, and a sweep of one whose frequencies are irrational.
-fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow, question: &Respond) -> Result<(), Error> {
-    if slow.enclosed.is_some() && question.sweep.is_some() {
-        let message = "a frequency is irrational: branches are followed of slow flows with exact coefficients";
-        let hint = "without --sweep: the states at one value";
-        return Err(Refused::no_answer("no-rational-modes", message, hint).into());
-    }
+/// Branches of less than the slow flow would be those of another one.
+fn not_whole() -> Error {
+    let message =
+        "a frequency is irrational, and coefficients of the slow flow cannot be told from zero";
+    let hint = "without --sweep: the states at one value, their number estimated; more --digits";
+    Refused::no_answer("no-rational-modes", message, hint).into()
+}
+
+/// Refuses a slow flow that depends on frequencies without a value.
+fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
     let Some(name) = slow.system.independent.first() else { return Ok(()) };
     let problem = oscillator.problem().name.to_string();
     Err(DerivationError::Unset { problem, name: name.clone() }.into())
@@ -435,11 +441,6 @@ fn no_resonance(name: &str) -> Error {
     let message = format!("no value of {name} lies within a tenth of a resonance");
     let hint = "a range about a resonance, or the detuning as a parameter of its own";
     Refused::no_answer("no-response", message, hint).into()
-}
-
-/// k_1, k_2, ...
-fn listed(turn: &[Rational]) -> String {
-    turn.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn no_polynomial(symbol: &str, name: &str) -> Error {

@@ -12,6 +12,8 @@ pub struct Flow {
     pub rows: Vec<Polynomial>,
     /// The names of the parameters.
     pub parameters: Vec<String>,
+    /// Its equations in complex unknowns, where it is made of such.
+    pub(super) complex: Vec<Vec<ComplexTerm>>,
 }
 
 /// A term of w_j' in complex unknowns: (re + i im) prod_j w_j^(p_j) conj(w_j)^(q_j) times powers of the parameters.
@@ -25,6 +27,8 @@ pub struct ComplexTerm {
     pub re: Rational,
     /// The imaginary part.
     pub im: Rational,
+    /// What each of these may be off by.
+    pub radius: f64,
 }
 
 /// A point at which steady states change. With J = G_w:
@@ -55,21 +59,28 @@ impl Flow {
         for equation in equations {
             let mut sum = [Polynomial::default(), Polynomial::default()];
             for term in equation {
-                let mut exponents = vec![0; unknowns];
-                exponents.extend(&term.parameters);
-                let mut powers = Polynomial::default();
-                powers.add_term(&exponents, &Rational::from(1));
-                let coefficient = [&term.re, &term.im].map(|q| Polynomial::constant(q.clone()));
-                let mut product = coefficient.map(|q| &powers * &q);
+                let coefficient = |q: &Rational| Polynomial::within(q.clone(), term.radius);
+                let mut product = [&term.re, &term.im].map(coefficient);
                 for (k, e) in term.amplitudes.iter().enumerate() {
                     let factor = part(k / 2, if k % 2 == 0 { 1 } else { -1 });
                     product = (0..*e).fold(product, |p, _| times(&p, &factor));
                 }
-                sum = [0, 1].map(|k| std::mem::take(&mut sum[k]) + &product[k]);
+                let mut exponents = vec![0; unknowns];
+                exponents.extend(&term.parameters);
+                let mut powers = Polynomial::default();
+                powers.add_term(&exponents, &Rational::from(1));
+                sum = [0, 1].map(|k| std::mem::take(&mut sum[k]) + &(&product[k] * &powers));
             }
             rows.extend(sum);
         }
-        Self { rows, parameters: parameters.iter().map(|name| (*name).to_owned()).collect() }
+        let parameters = parameters.iter().map(|name| (*name).to_owned()).collect();
+        Self { complex: equations.to_vec(), ..Self::of_rows(rows, parameters) }
+    }
+
+    /// A flow of any polynomials.
+    #[must_use]
+    pub fn of_rows(rows: Vec<Polynomial>, parameters: Vec<String>) -> Self {
+        Self { rows, parameters, complex: Vec::new() }
     }
 
     /// n.

@@ -17,7 +17,7 @@
 //! // Primary resonance of Duffing's oscillator, w' = -(i/4) F - mu w - i s w + (3/2) i w^2 conj w,
 //! // at mu = 1/10, s = 1, F = 1: three steady states.
 //! let term = |powers: [u32; 2], re: (i32, i32), im: (i32, i32)| ComplexTerm {
-//!     amplitudes: powers.to_vec(), parameters: vec![], re: re.into(), im: im.into(),
+//!     amplitudes: powers.to_vec(), parameters: vec![], re: re.into(), im: im.into(), radius: 0.0,
 //! };
 //! let flow = Flow::of_complex(&[vec![
 //!     term([0, 0], (0, 1), (-1, 4)),
@@ -36,6 +36,7 @@ mod flow;
 mod krawczyk;
 mod plane;
 mod polynomial;
+mod quiet;
 mod relative;
 mod search;
 mod settle;
@@ -49,6 +50,7 @@ pub use flow::{Change, ComplexTerm, Flow};
 pub use krawczyk::{Region, Zero, zero_near};
 pub use plane::{Curve, Diagram, Plane};
 pub use polynomial::{Polynomial, System};
+pub use quiet::all_states;
 pub use relative::FreePhase;
 pub use search::{Found, Limits, all_zeros, bound};
 pub use settle::{Fate, settle};

@@ -10,16 +10,43 @@ use std::ops::{Add, Mul};
 /// A polynomial: exponents of the variables (missing ones are 0) with coefficients, none of which is zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polynomial {
-    terms: BTreeMap<Vec<u32>, Rational>,
+    terms: BTreeMap<Vec<u32>, Coefficient>,
+}
+
+/// Any number within a radius of a rational one.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Coefficient {
+    middle: Rational,
+    radius: f64,
+}
+
+impl Coefficient {
+    fn times(&self, other: &Self) -> Self {
+        let middle = Rational::from(&self.middle * &other.middle);
+        if self.radius == 0.0 && other.radius == 0.0 {
+            return Self { middle, radius: 0.0 };
+        }
+        let [a, b] = [self, other].map(|c| Interval::point(Interval::of(&c.middle).above()));
+        let [r, s] = [self, other].map(|c| Interval::point(c.radius));
+        Self { middle, radius: (a * s + b * r + r * s).above() }
+    }
 }
 
 impl Polynomial {
     /// Adds q times a monomial.
     pub fn add_term(&mut self, exponents: &[u32], q: &Rational) {
+        self.put(exponents, &Coefficient { middle: q.clone(), radius: 0.0 });
+    }
+
+    fn put(&mut self, exponents: &[u32], c: &Coefficient) {
         let used = exponents.iter().rposition(|e| *e > 0).map_or(0, |last| last + 1);
         let key = exponents[..used].to_vec();
-        let sum = self.terms.remove(&key).unwrap_or_default() + q;
-        if sum != 0 {
+        let mut sum = self.terms.remove(&key).unwrap_or_default();
+        sum.middle += &c.middle;
+        if c.radius != 0.0 {
+            sum.radius = (Interval::point(sum.radius) + Interval::point(c.radius)).above();
+        }
+        if sum != Coefficient::default() {
             self.terms.insert(key, sum);
         }
     }
@@ -29,31 +56,35 @@ impl Polynomial {
     pub fn variable(i: usize) -> Self {
         let mut exponents = vec![0; i + 1];
         exponents[i] = 1;
-        Self { terms: [(exponents, Rational::from(1))].into() }
+        let mut variable = Self::default();
+        variable.add_term(&exponents, &Rational::from(1));
+        variable
     }
 
     /// A constant.
     #[must_use]
     pub fn constant(q: Rational) -> Self {
-        let mut constant = Self::default();
-        constant.add_term(&[], &q);
-        constant
+        Self::within(q, 0.0)
     }
 
-    /// The terms.
-    pub fn terms(&self) -> impl Iterator<Item = (&[u32], &Rational)> {
-        self.terms.iter().map(|(exponents, q)| (exponents.as_slice(), q))
+    /// Any constant within a radius of a rational number.
+    #[must_use]
+    pub fn within(middle: Rational, radius: f64) -> Self {
+        let mut constant = Self::default();
+        constant.put(&[], &Coefficient { middle, radius });
+        constant
     }
 
     /// The derivative by the variable i.
     #[must_use]
     pub fn by(&self, i: usize) -> Self {
         let mut derivative = Self::default();
-        for (exponents, q) in &self.terms {
+        for (exponents, c) in &self.terms {
             if let Some(e) = exponents.get(i).copied().filter(|e| *e > 0) {
                 let mut lower = exponents.clone();
                 lower[i] -= 1;
-                derivative.add_term(&lower, &Rational::from(q * e));
+                let power = Coefficient { middle: e.into(), radius: 0.0 };
+                derivative.put(&lower, &c.times(&power));
             }
         }
         derivative
@@ -63,8 +94,8 @@ impl Polynomial {
 impl Add<&Polynomial> for Polynomial {
     type Output = Self;
     fn add(mut self, other: &Self) -> Self {
-        for (exponents, q) in &other.terms {
-            self.add_term(exponents, q);
+        for (exponents, c) in &other.terms {
+            self.put(exponents, c);
         }
         self
     }
@@ -79,7 +110,7 @@ impl Mul for &Polynomial {
                 let (long, short) = if a.len() > b.len() { (a, b) } else { (b, a) };
                 let mut sum = long.clone();
                 sum.iter_mut().zip(short).for_each(|(e, f)| *e += f);
-                product.add_term(&sum, &Rational::from(p * q));
+                product.put(&sum, &p.times(q));
             }
         }
         product
@@ -141,6 +172,28 @@ pub struct System {
     largest: u32,
 }
 
+/// The sum of two rows, each times a variable and a sign.
+fn combined(parts: [(&Vec<Term>, usize, f64); 2]) -> Vec<Term> {
+    let mut sums: BTreeMap<Vec<(usize, u32)>, Interval> = BTreeMap::new();
+    for (term, factor, sign) in
+        parts.into_iter().flat_map(|(row, factor, sign)| row.iter().map(move |t| (t, factor, sign)))
+    {
+        let mut powers = term.powers.clone();
+        match powers.binary_search_by_key(&factor, |(i, _)| *i) {
+            Ok(place) => powers[place].1 += 1,
+            Err(place) => powers.insert(place, (factor, 1)),
+        }
+        let sum = sums.entry(powers).or_insert(Interval::ZERO);
+        *sum = *sum + Interval::point(sign) * term.coefficient;
+    }
+    let term = |(powers, coefficient): (_, Interval)| Term {
+        near: coefficient.middle(),
+        coefficient,
+        powers,
+    };
+    sums.into_iter().map(term).collect()
+}
+
 impl System {
     /// The polynomials as functions of the variables for which `values` has nothing, in their order; a variable
     /// beyond the list is free if it occurs in a polynomial or is below `least`.
@@ -161,17 +214,22 @@ impl System {
         }
         let row = |polynomial: &Polynomial| {
             let mut sums: BTreeMap<Vec<(usize, u32)>, (Rational, Interval)> = BTreeMap::new();
-            for (exponents, q) in polynomial.terms() {
+            for (exponents, c) in &polynomial.terms {
                 let mut powers = Vec::new();
-                let (mut rational, mut other) = (q.clone(), Interval::ONE);
+                let (mut scale, mut other) = (Rational::from(1), Interval::ONE);
                 for (i, e) in exponents.iter().enumerate().filter(|(_, e)| **e > 0) {
                     match (exact.get(i).copied().flatten(), given.get(i).copied().flatten()) {
-                        (Some(value), _) => (0..*e).for_each(|_| rational *= value),
+                        (Some(value), _) => (0..*e).for_each(|_| scale *= value),
                         (None, Some(value)) => other = other * value.powi(*e),
                         (None, None) => powers.push((place[i], *e)),
                     }
                 }
                 let sum = sums.entry(powers).or_insert((Rational::new(), Interval::ZERO));
+                if c.radius > 0.0 {
+                    let off = Interval::new(-c.radius, c.radius) * Interval::of(&scale) * other;
+                    sum.1 = sum.1 + off;
+                }
+                let rational = scale * &c.middle;
                 if other == Interval::ONE {
                     sum.0 += rational;
                 } else {
@@ -189,6 +247,23 @@ impl System {
         let powers = rows.iter().flatten().flat_map(|term| &term.powers);
         let largest = powers.map(|(_, e)| *e).max().unwrap_or(0);
         Self { rows, variables, largest }
+    }
+
+    /// Re and Im of conj(w_j) G_j, for those pairs w_j = (x_2j, x_2j+1) that are a factor of every term of the polynomials
+    /// G_j = (2j, 2j+1): zero where these are. The phase of such a w_j may be free or almost so; these say that
+    /// Re (conj(w) w') = |w| |w|' vanishes nowhere, which the polynomials themselves show on small boxes alone.
+    pub(crate) fn turned_back(&self) -> Option<Self> {
+        let mut rows = Vec::new();
+        for (j, pair) in self.rows.chunks_exact(2).enumerate() {
+            let own = [2 * j, 2 * j + 1];
+            let has = |term: &Term| term.powers.iter().any(|(i, _)| own.contains(i));
+            if pair.iter().flatten().all(has) {
+                let [u, v] = own;
+                rows.push(combined([(&pair[0], u, 1.0), (&pair[1], v, 1.0)]));
+                rows.push(combined([(&pair[1], u, 1.0), (&pair[0], v, -1.0)]));
+            }
+        }
+        (!rows.is_empty()).then_some(Self { rows, largest: self.largest + 1, ..*self })
     }
 
     /// The number of polynomials.

@@ -47,7 +47,7 @@ impl FreePhase {
         let [eta_re, eta_im] = [0, 1].map(Polynomial::variable);
         let rows =
             vec![of_gauge[0].clone(), re + &(&turn * &eta_im), im + &(&(&turn * &eta_re) * &minus)];
-        Some(Flow { rows, parameters: self.parameters.clone() })
+        Some(Flow::of_rows(rows, self.parameters.clone()))
     }
 
     /// G_j/a.
@@ -62,8 +62,8 @@ impl FreePhase {
                 * Rational::from((&scales[1]).pow(others[0] + others[1]));
             let part = |q: &Rational| {
                 let mut part = Polynomial::default();
-                part.add_term(&exponents, &Rational::from(q * &size));
-                part
+                part.add_term(&exponents, &size);
+                &part * &Polynomial::within(q.clone(), term.radius)
             };
             let mut product = [part(&term.re), part(&term.im)];
             for (sign, n) in [1, -1].into_iter().zip(others) {

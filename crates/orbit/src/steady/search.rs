@@ -79,7 +79,9 @@ pub fn all_zeros(system: &System, region: &[Interval], limits: &Limits) -> Optio
     if !fits || region.iter().any(|x| !x.is_finite()) {
         return None;
     }
-    let mut search = Search { system, limits, zeros: Vec::new(), open: Vec::new(), boxes: 0 };
+    let turned_back = system.turned_back();
+    let (zeros, open) = (Vec::new(), Vec::new());
+    let mut search = Search { system, turned_back, limits, zeros, open, boxes: 0 };
     let stopped = !search.run(region);
     let meets = |zero: &Zero| meet(&zero.enclosure, region).is_some();
     search.zeros.retain(meets);
@@ -98,7 +100,7 @@ pub fn all_zeros(system: &System, region: &[Interval], limits: &Limits) -> Optio
 }
 
 /// An enclosure of the largest modulus of (x_0, x_1), (x_2, x_3), ...; an odd last one stands alone.
-fn modulus(region: &[Interval]) -> Interval {
+pub(super) fn modulus(region: &[Interval]) -> Interval {
     let square = |pair: &[Interval]| pair.iter().fold(Interval::ZERO, |sum, x| sum + x.powi(2));
     let squares = region.chunks(2).map(square);
     let (low, high) =
@@ -111,6 +113,8 @@ const ROUNDING: f64 = 1e-13;
 
 struct Search<'a> {
     system: &'a System,
+    /// What also vanishes at its zeros.
+    turned_back: Option<System>,
     limits: &'a Limits,
     zeros: Vec<Zero>,
     open: Vec<Region>,
@@ -134,6 +138,10 @@ impl Search<'_> {
                 self.open.push(part);
                 self.open.append(&mut stack);
                 return false;
+            }
+            let values = self.turned_back.as_ref().map(|other| other.values(&part));
+            if values.is_some_and(|values| values.iter().any(|value| !value.contains(0.0))) {
+                continue;
             }
             let next = match krawczyk(self.system, &part) {
                 Verdict::None => continue,

@@ -6,10 +6,10 @@
 use super::branch::{Branch, Course, follow};
 use super::flow::{Change, Flow};
 use super::krawczyk::{Zero, newton};
-use super::search::{Found, Limits, all_zeros};
+use super::quiet::all_states;
+use super::search::{Found, Limits};
 use super::value::Value;
 use lindstedt_number::Exact;
-use lindstedt_number::interval::Interval;
 
 /// What is asked.
 #[derive(Clone, Debug)]
@@ -61,14 +61,13 @@ impl Survey<'_> {
         let [open] = open[..] else { return None };
         let course = Course { parameter: n, unknowns: n, ..self.course.clone() };
         let system = self.flow.system(&self.values);
-        let region = vec![Interval::new(-course.reach, course.reach); n];
         let mut response =
             Response { branches: Vec::new(), changes: Vec::new(), searches: Vec::new() };
         for sample in &self.samples {
             let mut values = self.values.clone();
             values[open] = Some(sample.into());
             let fixed = self.flow.system(&values);
-            let found = all_zeros(&fixed, &region, &self.limits)?;
+            let found = all_states(self.flow, &values, course.reach, &self.limits)?;
             let value = sample.to_f64();
             for zero in &found.zeros {
                 let known = |branch: &Branch| {

@@ -41,7 +41,8 @@ fn a_double_root_is_undecided_not_none() {
 
 fn term(amplitudes: &[u32], parameters: &[u32], re: (i64, i64), im: (i64, i64)) -> ComplexTerm {
     let (re, im) = (Rational::from(re), Rational::from(im));
-    ComplexTerm { amplitudes: amplitudes.to_vec(), parameters: parameters.to_vec(), re, im }
+    let (amplitudes, parameters) = (amplitudes.to_vec(), parameters.to_vec());
+    ComplexTerm { amplitudes, parameters, re, im, radius: 0.0 }
 }
 
 /// w' = -(i/4) F - mu w - i s w + (3/2) i al w^2 conj w; parameters s, mu, al, F. Nayfeh and Mook, section 4.1.
@@ -363,6 +364,7 @@ fn steady_but_for_a_phase() {
         parameters: vec![],
         re,
         im,
+        radius: 0.0,
     };
     let first = vec![
         term([1, 0, 0, 0], -mu.clone(), -s.clone()),
@@ -399,4 +401,75 @@ fn steady_but_for_a_phase() {
         // The larger amplitude (Re y < 0) is the stable one.
         assert_eq!(exponents.iter().all(|x| x.re < 0.0), re < 0.0);
     }
+}
+
+/// A forced unknown that damps or drives another one whose phase is free: its states are those without the other, as the search
+/// in all four unknowns has them; where the other one moves by itself its states are circles, and nothing is decided.
+#[test]
+fn an_unknown_with_a_free_phase() {
+    let flow = |growth: (i64, i64), rate: (i64, i64)| {
+        let forced = vec![
+            term(&[0, 0, 0, 0], &[], (0, 1), (-1, 4)),
+            term(&[1, 0, 0, 0], &[], (-1, 10), (-1, 1)),
+            term(&[2, 1, 0, 0], &[], (0, 1), (3, 2)),
+            term(&[1, 0, 1, 1], &[], (0, 1), (1, 3)),
+        ];
+        let free = vec![
+            term(&[0, 0, 1, 0], &[], growth, rate),
+            term(&[1, 1, 1, 0], &[], (1, 7), (1, 5)),
+            term(&[0, 0, 2, 1], &[], (-1, 1), (0, 1)),
+        ];
+        Flow::of_complex(&[forced, free], &[])
+    };
+    let limits = Limits { modulus: Some(1.5), boxes: 300_000, ..Limits::default() };
+    let moves = flow((-1, 5), (1, 3));
+    let found = all_states(&moves, &[], 1.5, &limits).unwrap();
+    let region = [Interval::new(-1.5, 1.5); 4];
+    let known = all_zeros(&moves.system(&[]), &region, &limits).unwrap();
+    assert!(found.is_proved() && known.is_proved());
+    assert_eq!((found.zeros.len(), known.zeros.len()), (3, 3));
+    assert!(10 * found.boxes < known.boxes, "{} {}", found.boxes, known.boxes);
+    for zero in &found.zeros {
+        let near = |other: &Zero| {
+            other.middle().iter().zip(zero.middle()).all(|(a, b)| (a - b).abs() < 1e-12)
+        };
+        assert!(known.zeros.iter().any(near));
+    }
+    // Re A = 1/5 - |w|^2 + ... and Im B = 0 have a common zero: circles of states.
+    let circles = flow((1, 5), (0, 1));
+    let without = circles.complex[1].iter().filter(|t| t.amplitudes[0] == 0).cloned().collect();
+    let circles = Flow::of_complex(&[circles.complex[0].clone(), without], &[]);
+    let few = Limits { boxes: 20_000, ..limits };
+    assert!(!all_states(&circles, &[], 1.5, &few).unwrap().is_proved());
+}
+
+/// Coefficients within a radius: the enclosures contain the zeros of every flow within it.
+#[test]
+fn coefficients_within_a_radius() {
+    let flow = |radius: f64, force: i64| {
+        let with = |mut term: ComplexTerm| {
+            term.radius = radius;
+            term
+        };
+        let terms = vec![
+            with(term(&[0, 0], &[], (0, 1), (-force, 4_000_000))),
+            with(term(&[1, 0], &[], (-1, 10), (-1, 1))),
+            with(term(&[2, 1], &[], (0, 1), (3, 2))),
+        ];
+        Flow::of_complex(&[terms], &[])
+    };
+    let limits = Limits { boxes: 20_000, ..Limits::default() };
+    let found = |flow: &Flow| all_states(flow, &[], 1.5, &limits).unwrap();
+    let wide = found(&flow(1e-6, 1_000_000));
+    assert!(wide.is_proved() && wide.zeros.len() == 3);
+    for force in [1_000_003, 999_997] {
+        let other = found(&flow(0.0, force));
+        for zero in other.zeros {
+            let inside = |known: &Zero| {
+                known.enclosure.iter().zip(zero.middle()).all(|(x, a)| x.contains(a))
+            };
+            assert!(wide.zeros.iter().any(inside), "{:?}", zero.enclosure);
+        }
+    }
+    assert!(!found(&flow(1e-1, 1_000_000)).is_proved());
 }

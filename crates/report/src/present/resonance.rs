@@ -274,6 +274,16 @@ impl Board<'_> {
         if orders.is_empty() {
             return page;
         }
+        for form in self.0.quadratic_invariants() {
+            page =
+                page.formula(both(|style| format!("Q = {}", self.polynomial(&form.terms, style))));
+            let last = match form.orders {
+                1 => String::new(),
+                n => format!(" to f_{n}"),
+            };
+            page = page
+                .words(format!("Quadratic invariant: Q is conserved by f_1{last}, identically."));
+        }
         page.words(format!(
             "Energy: the equations derive from a potential; H_0 + H_1*{} + ... is conserved by the flow, identically at orders 0 \
              to {}.",

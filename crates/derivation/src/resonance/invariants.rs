@@ -1,0 +1,78 @@
+//! Quadratic invariants of slow flows: Q = sum_j q_j |z_j|^2 with
+//!
+//!   D_n Q = sum_j q_j 2 Re(zbar_j f_{j,n}) = 0
+//!
+//! for n = 1, ..., identically. Every resonant term of order one of a Hamiltonian flow exchanges |z_j|^2 in the proportion that
+//! the lattice of its resonances fixes (Manley and Rowe 1956), so that M unknowns with r independent resonances have M - r of
+//! them; in the z_j, which are no canonical coordinates beyond order one, higher orders need not keep them. What is
+//! asked here is the kernel of the rates of the |z_j|^2, which knows nothing of potentials and resonances.
+
+use super::modes::{Matrix, kernel};
+use super::{SlowFlow, Terms};
+use lindstedt_phase::amplitudes::AmplitudeTerm;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// sum_j q_j |z_j|^2.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct QuadraticInvariant {
+    /// As a polynomial.
+    pub terms: Terms,
+    /// f_1, ..., f_n of so many orders keep it, identically.
+    pub orders: usize,
+}
+
+impl SlowFlow {
+    /// The quadratic forms that f_1 keeps, of several unknowns whose energy is conserved; none where coefficients are
+    /// enclosed.
+    #[must_use]
+    pub fn quadratic_invariants(&self) -> Vec<QuadraticInvariant> {
+        let unknowns = self.unknowns();
+        if unknowns < 2 || self.energy.is_empty() || self.enclosed.is_some() || self.order == 0 {
+            return Vec::new();
+        }
+        let rates: Vec<Matrix> = (1..=self.order).map(|n| self.rates_of_squares(n)).collect();
+        let keeps = |q: &[Rational], rates: &Matrix| {
+            rates.iter().all(|row| {
+                let sum: Rational = row.iter().zip(q).map(|(x, q)| Rational::from(x * q)).sum();
+                sum.is_zero()
+            })
+        };
+        let invariant = |q: Vec<Rational>| {
+            let orders = rates.iter().take_while(|rates| keeps(&q, rates)).count();
+            let square = |(j, q): (usize, &Rational)| {
+                let mut exponents = vec![0; self.first_symbol() + self.system.symbols.len()];
+                exponents[2 * j..2 * j + 2].fill(1);
+                AmplitudeTerm { exponents, re: q.clone(), im: Rational::new() }
+            };
+            let terms = q.iter().enumerate().filter(|(_, q)| !q.is_zero()).map(square).collect();
+            QuadraticInvariant { terms, orders }
+        };
+        kernel(rates[0].clone(), unknowns).into_iter().map(invariant).collect()
+    }
+
+    /// The coefficients of D_n |z_j|^2, a column per j.
+    fn rates_of_squares(&self, n: usize) -> Matrix {
+        let unknowns = self.unknowns();
+        let mut rows: BTreeMap<(Vec<i32>, bool), Vec<Rational>> = BTreeMap::new();
+        for (j, terms) in self.flow.iter().enumerate() {
+            for term in terms.get(n).into_iter().flatten() {
+                let mut word = term.exponents.clone();
+                word[2 * j + 1] += 1;
+                let mut mirrored = word.clone();
+                (0..unknowns).for_each(|k| mirrored.swap(2 * k, 2 * k + 1));
+                mirrored[2 * unknowns..self.first_symbol()].iter_mut().for_each(|m| *m = -*m);
+                for (key, sign) in [(word, 1), (mirrored, -1)] {
+                    for (imaginary, part) in
+                        [(false, term.re.clone()), (true, Rational::from(&term.im * sign))]
+                    {
+                        let row = rows.entry((key.clone(), imaginary));
+                        row.or_insert_with(|| vec![Rational::new(); unknowns])[j] += part;
+                    }
+                }
+            }
+        }
+        rows.into_values().collect()
+    }
+}
