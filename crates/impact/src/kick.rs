@@ -209,6 +209,27 @@ pub fn piecewise_growth(
     watched_growth(parameters, orbit, flights, &Stop::default())
 }
 
+/// Whether the rate of [`piecewise_growth`] is below 1; nothing where it is within its error of 1. Finer flights are
+/// looked at only near 1: the error of a flight is some 10^-12.
+///
+/// # Errors
+/// As [`piecewise_growth`].
+pub fn piecewise_stable(
+    parameters: &Parameters<f64>,
+    orbit: &Orbit<f64>,
+    flights: usize,
+) -> Result<Option<bool>, ImpactError> {
+    let stop = Stop::default();
+    let run = run(parameters, orbit, flights, &stop)?;
+    let far = |found: &Growth, least: f64| (found.rate - 1.0).abs() > least + found.error;
+    let below = |found: &Growth| Some(found.rate < 1.0);
+    if far(&run.growth, BAND) {
+        return Ok(below(&run.growth));
+    }
+    let found = run.refined(parameters, orbit, flights, &stop)?;
+    Ok(below(&found).filter(|_| far(&found, 0.0)))
+}
+
 /// [`piecewise_growth`], that can be stopped.
 pub(crate) fn watched_growth(
     parameters: &Parameters<f64>,
@@ -216,6 +237,22 @@ pub(crate) fn watched_growth(
     flights: usize,
     stop: &Stop,
 ) -> Result<Growth, ImpactError> {
+    run(parameters, orbit, flights, stop)?.refined(parameters, orbit, flights, stop)
+}
+
+/// The largest rate of four starts.
+struct Run {
+    start: [f64; 2],
+    /// With the error of the run and of rounding.
+    growth: Growth,
+}
+
+fn run(
+    parameters: &Parameters<f64>,
+    orbit: &Orbit<f64>,
+    flights: usize,
+    stop: &Stop,
+) -> Result<Run, ImpactError> {
     let mut map = ReturnMap::new(parameters, orbit)?;
     let starts = [[1.0, 0.3], [-1.0, -0.3], [0.2, 1.0], [-0.2, -1.0]];
     let starts = starts.map(|start| start.map(|part| part * orbit.velocity));
@@ -232,18 +269,32 @@ pub(crate) fn watched_growth(
         }
     }
     let (start, mut growth) = largest;
-    growth.error = unsettled + (growth.rate - next);
-    let mut change: f64 = 0.0;
-    for more in MORE_POINTS {
-        let mut map = ReturnMap::finer(parameters, orbit, more)?;
-        let other = growth_of_run(&mut map, start, flights, stop)?;
-        change = change.max((other.rate - growth.rate).abs());
-    }
     let points = map.force.len() as f64;
     let unit = 2.0 * f64::EPSILON;
     let rounding = unit * points * (1.0 + points / (flights.max(1) as f64).sqrt());
-    growth.error += change + rounding * growth.rate.max(1.0);
-    Ok(growth)
+    growth.error = unsettled + (growth.rate - next) + rounding * growth.rate.max(1.0);
+    Ok(Run { start, growth })
+}
+
+impl Run {
+    /// With the error of the flight.
+    fn refined(
+        self,
+        parameters: &Parameters<f64>,
+        orbit: &Orbit<f64>,
+        flights: usize,
+        stop: &Stop,
+    ) -> Result<Growth, ImpactError> {
+        let mut growth = self.growth;
+        let mut change: f64 = 0.0;
+        for more in MORE_POINTS {
+            let mut map = ReturnMap::finer(parameters, orbit, more)?;
+            let other = growth_of_run(&mut map, self.start, flights, stop)?;
+            change = change.max((other.rate - growth.rate).abs());
+        }
+        growth.error += change;
+        Ok(growth)
+    }
 }
 
 /// The growth from one start, the first quarter of the run left out; its error is that of the run alone.

@@ -17,6 +17,7 @@
 mod waves;
 
 use crate::{Branch, StickSlip};
+use lindstedt_algebra::Stop;
 use std::f64::consts::PI;
 use waves::Waves;
 
@@ -38,6 +39,8 @@ pub struct Splitting<'a> {
     pub harmonics: u32,
     /// k: where h jumps or bends.
     pub kink: Option<f64>,
+    /// Asked at every step along an orbit.
+    pub stop: &'a Stop,
 }
 
 /// An orbit of x'' = f(x) from a saddle to a saddle.
@@ -56,8 +59,11 @@ pub struct SecondOrder {
     pub signed: f64,
     /// Its estimated error, from two steps of integration.
     pub signed_error: f64,
-    /// gamma_1: the threshold is |gamma_0| + gamma_1 eps.
+    /// gamma_1: the threshold is |gamma_0| + gamma_1 eps for eps > 0.
     pub slope: f64,
+    /// gamma_1 for eps < 0: another one where several extrema of the work are equal, each of which has a tangency. The
+    /// threshold is the first of these.
+    pub slope_below: f64,
     /// The estimated error of the slope, from two steps of integration.
     pub error: f64,
     /// max |g|/max |f| on the orbit: eps is small against its reciprocal.
@@ -129,7 +135,7 @@ struct Side {
 
 impl Splitting<'_> {
     /// gamma_0 and gamma_1 of an orbit; nothing where a function is undefined on it, where D = 0, where the
-    /// saddle lies where h jumps, or where x' = k is not passed with a speed.
+    /// saddle lies where h jumps, where x' = k is not passed with a speed, or when stopped.
     ///
     /// Cost: some thousand evaluations of the functions for every maximum of the work of d.
     ///
@@ -143,6 +149,7 @@ impl Splitting<'_> {
     ///     period: 2.0 * std::f64::consts::PI,
     ///     harmonics: 1,
     ///     kink: None,
+    ///     stop: &Default::default(),
     /// };
     /// let right = Connection { saddles: [0.0, 0.0], middle: 2f64.sqrt() };
     /// let found = splitting.second_order(&right).expect("a loop");
@@ -156,20 +163,24 @@ impl Splitting<'_> {
         // cancels to rounding errors is not better with finer steps.
         let noise = (fine.0 - coarse.0).abs();
         let share = if noise > 1e-9 * fine.0.abs() { 4.0 } else { 0.125 };
-        let error = share * (fine.1 - coarse.1).abs() + 1e-10 * fine.1.abs().max(fine.0.abs());
+        let change = |k: usize| (fine.1[k] - coarse.1[k]).abs();
+        let size = fine.1[0].abs().max(fine.1[1].abs()).max(fine.0.abs());
+        let error = share * change(0).max(change(1)) + 1e-10 * size;
         let signed_error = 4.0 * noise + 1e-10 * fine.0.abs();
-        let known = fine.1.is_finite() && signed_error < 1e-3 * fine.0.abs();
+        let known =
+            fine.1.iter().all(|slope| slope.is_finite()) && signed_error < 1e-3 * fine.0.abs();
         known.then_some(SecondOrder {
             signed: fine.0,
             signed_error,
-            slope: fine.1,
+            slope: fine.1[0],
+            slope_below: fine.1[1],
             error,
             strength: fine.2,
         })
     }
 
-    /// gamma_0, gamma_1 and the strength with so many steps per unit of the fastest time.
-    fn with_steps(&self, orbit: &Connection, steps: f64) -> Option<(f64, f64, f64)> {
+    /// gamma_0, gamma_1 for eps > 0 and for eps < 0, and the strength with so many steps per unit of the fastest time.
+    fn with_steps(&self, orbit: &Connection, steps: f64) -> Option<(f64, [f64; 2], f64)> {
         let sides = [self.side(orbit, 1.0, steps)?, self.side(orbit, -1.0, steps)?];
         let dissipation = first_order(&sides, &|_, x, v| Some((self.friction)(x, v)?[0]))?;
         let count = 2 * self.harmonics as usize + 2;
@@ -185,9 +196,10 @@ impl Splitting<'_> {
             Some((gamma, -(second(&sides[0])? - second(&sides[1])?) / size, *time))
         });
         let slopes = slopes.collect::<Option<Vec<_>>>()?;
+        let below = slopes.iter().map(|(_, slope, _)| *slope).reduce(f64::max)?;
         let (gamma, slope, time) = slopes.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let strength = self.strength(&sides, gamma, time)?;
-        (dissipation != 0.0).then_some((gamma.copysign(dissipation), slope, strength))
+        (dissipation != 0.0).then_some((gamma.copysign(dissipation), [slope, below], strength))
     }
 
     /// max |g|/max |f| on the orbit.
@@ -213,7 +225,7 @@ impl Splitting<'_> {
         let mut side = Side { saddle, rate, steps: Vec::new() };
         let force = |_: usize, x: f64| Some((self.force)(x)?[0]);
         let (mut time, mut above) = (0.0, self.kink.map(|k| 0.0 > k));
-        while side.steps.len() < MOST_STEPS {
+        while side.steps.len() < MOST_STEPS && !self.stop.asked() {
             let (mut stages, mut end) = step(state, h, &force)?;
             let arrived = |end: &State| {
                 if is_loop {
@@ -264,6 +276,9 @@ impl Splitting<'_> {
         let mut energy = (first[1].powi(2) - (side.rate * first[0]).powi(2)) / 2.0;
         let mut along = 0.0;
         for step in &side.steps {
+            if self.stop.asked() {
+                return None;
+            }
             let mut local = [([0.0; 2], [0.0; 3]); 3];
             for (k, local) in local.iter_mut().enumerate() {
                 let t = step.time + NODES[k] * step.h + shift;
@@ -344,6 +359,7 @@ impl StickSlip {
             period: 2.0 * PI / omega,
             harmonics: 1,
             kink: (dry != 0.0).then_some(belt),
+            stop: &Stop::default(),
         };
         let middle = branch.sign() as f64 * (2.0 * a / b).sqrt();
         splitting.second_order(&Connection { saddles: [0.0, 0.0], middle })

@@ -9,6 +9,7 @@ use crate::melnikov::MelnikovProblem;
 use crate::numeric::NumericOrbit;
 use crate::reading::Unperturbed;
 use crate::refusal::{Refusal, Why};
+use lindstedt_algebra::Stop;
 use lindstedt_equation::monomials::Monomials;
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_melnikov::splitting::{Connection, SecondOrder, Splitting};
@@ -115,9 +116,9 @@ impl SplittingProblem {
         Expression::ACCELERATION - self.force.clone() + Expression::Small * perturbation
     }
 
-    /// Every orbit: right loop before left, upper before lower. Estimated.
+    /// Every orbit: right loop before left, upper before lower. Estimated; once `stop` says so none is found.
     #[must_use]
-    pub fn orbits(&self) -> Vec<OrbitSplitting> {
+    pub fn orbits(&self, stop: &Stop) -> Vec<OrbitSplitting> {
         let splitting = Splitting {
             force: &|x| Point::at(0.0, x, 0.0).local(&self.force).map(|[f, slope, _]| [f, slope]),
             drive: &|t, x, v| Point::at(t, x, v).local(&self.drive),
@@ -125,6 +126,7 @@ impl SplittingProblem {
             period: self.period(),
             harmonics: self.harmonics,
             kink: self.kink,
+            stop,
         };
         let one = |(name, orbit): (&'static str, Connection)| OrbitSplitting {
             name,

@@ -318,6 +318,33 @@ impl Homoclinic<'_> {
         Ok([u, saddle.components(tangent)[0]])
     }
 
+    /// What Newton's method needs besides G and dG/dsigma, by differences; nothing where they were too wide, and are less
+    /// wide now.
+    fn derivatives(
+        &self,
+        (here, value, phase, g): (&Place, f64, f64, f64),
+        periods: u32,
+        steps: &mut Steps,
+        tick: &Tick<'_>,
+    ) -> Result<Option<Derivatives>, SimulateError> {
+        let guess = here.1.state;
+        let component = |place: &Place, phase| self.unstable_component(place, phase, periods, tick);
+        let more = component(&self.at(value + steps.value, guess, tick)?, phase)?;
+        let less = component(&self.at(value - steps.value, guess, tick)?, phase)?;
+        let later = component(here, phase + steps.phase)?;
+        let sooner = component(here, phase - steps.phase)?;
+        // The differences stay where G is nearly linear in the value, quadratic in the phase.
+        let (change, bend) = ((more[0] - less[0]).abs(), (later[0] + sooner[0] - 2.0 * g).abs());
+        if change > 1e-3 || bend > 1e-3 {
+            steps.value *= (1e-4 / change).min(1.0);
+            steps.phase *= (1e-4 / bend).sqrt().min(1.0);
+            return Ok(None);
+        }
+        let by_value = [0, 1].map(|k| (more[k] - less[k]) / (2.0 * steps.value));
+        let curvature = (later[1] - sooner[1]) / (2.0 * steps.phase);
+        Ok(Some(Derivatives { by_value, curvature }))
+    }
+
     fn newton(
         &self,
         start: (f64, f64),
@@ -325,33 +352,31 @@ impl Homoclinic<'_> {
         tick: &Tick<'_>,
     ) -> Result<(f64, f64), SimulateError> {
         let (mut value, mut phase) = start;
-        let mut moved = f64::INFINITY;
-        let (mut step, mut turn) = (1e-6, 1e-5);
+        let (mut moved, mut before) = (f64::INFINITY, f64::INFINITY);
+        let mut steps = Steps { value: 1e-6, phase: 1e-5 };
         // The saddles of one step lie near those of the step before.
         let mut guess = self.guess;
+        let mut kept: Option<Derivatives> = None;
         for _ in 0..30 {
             let here = self.at(value, guess, tick)?;
             guess = here.1.state;
-            let component =
-                |place: &Place, phase| self.unstable_component(place, phase, periods, tick);
-            let [g, slope] = component(&here, phase)?;
-            let more = component(&self.at(value + step, guess, tick)?, phase)?;
-            let less = component(&self.at(value - step, guess, tick)?, phase)?;
-            let (later, sooner) =
-                (component(&here, phase + turn)?, component(&here, phase - turn)?);
-            // The differences stay where G is nearly linear in the value, quadratic in the phase.
-            let (change, bend) =
-                ((more[0] - less[0]).abs(), (later[0] + sooner[0] - 2.0 * g).abs());
-            if change > 1e-3 || bend > 1e-3 {
-                step *= (1e-4 / change).min(1.0);
-                turn *= (1e-4 / bend).sqrt().min(1.0);
-                continue;
-            }
-            let by_value = [0, 1].map(|k| (more[k] - less[k]) / (2.0 * step));
-            let curvature = (later[1] - sooner[1]) / (2.0 * turn);
-            let determinant = by_value[0] * curvature - by_value[1] * slope;
-            let dv = (slope * slope - g * curvature) / determinant;
-            let dp = (g * by_value[1] - slope * by_value[0]) / determinant;
+            let found = self.unstable_component(&here, phase, periods, tick)?;
+            // Four more orbits, where those of the step before do not bring G down.
+            let falls = found[0].abs() <= FALL * before;
+            let kept_on = kept.take().filter(|_| falls);
+            let fresh = kept_on.is_none();
+            let derivatives = match kept_on {
+                Some(derivatives) => derivatives,
+                None => {
+                    let near = (&here, value, phase, found[0]);
+                    match self.derivatives(near, periods, &mut steps, tick)? {
+                        Some(derivatives) => derivatives,
+                        None => continue,
+                    }
+                }
+            };
+            before = found[0].abs();
+            let [dv, dp] = derivatives.step(found);
             if !(dv.is_finite() && dp.is_finite()) {
                 break;
             }
@@ -360,15 +385,41 @@ impl Homoclinic<'_> {
             value += damping * dv;
             phase += damping * dp;
             // Far below the change from one number of periods to the next, or rounding errors.
-            if dv.abs() < 1e-12 || dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved {
+            let settled = fresh && dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved;
+            if dv.abs() < 1e-12 || settled {
                 return Ok((value, phase));
             }
             moved = dv.abs();
+            kept = Some(derivatives);
         }
         Err(SimulateError::NoTangency { value: start.0 })
     }
 }
 
+/// Half widths of differences by the value and by the phase.
+struct Steps {
+    value: f64,
+    phase: f64,
+}
+
+/// Of G and dG/dsigma by the value, and d^2 G/dsigma^2.
+struct Derivatives {
+    by_value: [f64; 2],
+    curvature: f64,
+}
+
+impl Derivatives {
+    /// The step in the value and in the phase to G = dG/dsigma = 0.
+    fn step(&self, [g, slope]: [f64; 2]) -> [f64; 2] {
+        let determinant = self.by_value[0] * self.curvature - self.by_value[1] * slope;
+        let dv = (slope * slope - g * self.curvature) / determinant;
+        let dp = (g * self.by_value[1] - slope * self.by_value[0]) / determinant;
+        [dv, dp]
+    }
+}
+
+/// The derivatives of one step serve the next where |G| falls to this share of what it was.
+const FALL: f64 = 0.1;
 /// Farther than this from the saddle the coordinates tell nothing.
 const AWAY: f64 = 0.4;
 /// Near enough to begin with.

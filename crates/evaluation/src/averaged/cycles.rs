@@ -3,10 +3,9 @@
 //! The series of a^2, of the frequency and of the Floquet exponent are exact (`derivation`, `averaging/cycles.rs`). Where
 //! only every s-th power occurs (s = 2 where t -> -t, eps -> -eps leaves the equation as it is) eps^s is the variable.
 //! Series with enough coefficients are resummed; of shorter ones the partial sum counts, and what follows is judged as in
-//! `rest.rs`: terms t_n of all three are taken to fall like q^n, q the largest (|t_n|/|t_0|)^(1/n) of the last two that
-//! do not vanish, and (|t_n|/|t_m|)^(1/(n - m)) of neighbours among them. All estimated.
+//! `rest.rs`: terms t_n of all three are taken to fall like the same q^n. All estimated.
 
-use super::rest::{SAFETY, last_two, power};
+use super::rest::{SAFETY, falls, last_two, power};
 use crate::digits::bits_for;
 use crate::source::gcd;
 use crate::source::remembered;
@@ -121,14 +120,7 @@ impl SummedCycle {
         let along = series.map(|series| Along::new(cycle, series, small));
         let ratios = along.iter().flatten().flat_map(|along| {
             let sizes = along.sizes(bits);
-            let last: Vec<_> = last_two(&sizes).collect();
-            let before = last.iter().skip(1).copied().chain([(0, sizes[0])]);
-            let ratio = |(m, before): (usize, f64), (n, size): (usize, f64)| {
-                (size / before).powf(1.0 / (n - m) as f64)
-            };
-            let roots = last.iter().map(|term| ratio((0, sizes[0]), *term));
-            let quotients = last.iter().zip(before).map(|(term, before)| ratio(before, *term));
-            roots.chain(quotients).collect::<Vec<_>>()
+            falls(&sizes, sizes[0])
         });
         // Where all vanish, as if the coefficients to come were 1.
         let q = ratios.reduce(f64::max).unwrap_or_else(|| small.to_f64().abs());

@@ -2,15 +2,16 @@
 //!
 //! The terms t_n of x and of the complex rate a'/a + i psi' are taken to fall like q^n,
 //!
-//!   q = max (|t_n|/t)^(1/n),   t = |x_0|, omega_0,
+//!   q = max (|t_n|/t)^(1/n), (|t_n|/|t_m|)^(1/(n - m)),   t = |x_0|, omega_0,
 //!
-//! over the last two orders n that do not vanish of both: orders vanish by symmetry, two in a row by accident
+//! over the last two orders n that do not vanish of both and what stands before them, t for m = 0: the roots alone follow
+//! late where the terms begin to fall less; orders vanish by symmetry, two in a row by accident
 //! (B_3 = B_4 = 0 for x'' + x + eps (x^2 + x'^2) = 0), and say nothing. The rest of x is the larger of |t_n| q^(N - n) for
 //! these two n, that of the rates p times as much, p = min (4 q/(1 - q), max (1, q/(1 - q))), and t q^(N + 1) where all orders vanish; but a' = 0 to every
 //! order where the motion can be run backwards. A_n and B_n are judged together: with a delay the complex rate turns from
-//! order to order, and one of them may be small by accident. Of 2500 linear equations with a delay, whose rate is a root
-//! of the characteristic equation, p is too small for 2.6 % of the numbers, by more than 2 for 0.1 %, and 3.4 times too
-//! large in the median. |t_n| is the largest among amplitudes passed through and some below the largest one: a
+//! order to order, and one of them may be small by accident. Of 2000 rates of linear equations with a delay, roots
+//! of the characteristic equation, 1 is further off than estimated, none by more than 2 times (by the roots alone 15 and 1), and
+//! the estimate 15 times too large in the median. |t_n| is the largest among amplitudes passed through and some below the largest one: a
 //! polynomial in a has zeros, as A_1 on a limit cycle.
 
 use super::truncated::Truncated;
@@ -58,6 +59,18 @@ pub(super) fn looked_at(passed: impl Iterator<Item = Float>) -> Vec<Float> {
 pub(super) fn last_two(sizes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
     let orders = sizes.iter().copied().enumerate().skip(1).rev();
     orders.filter(|(_, size)| *size != 0.0).take(2)
+}
+
+/// (t_n/t)^(1/n) of the last two sizes that do not vanish, and (t_n/t_m)^(1/(n - m)) of neighbours, t before the first.
+pub(super) fn falls(sizes: &[f64], scale: f64) -> Vec<f64> {
+    let last: Vec<_> = last_two(sizes).collect();
+    let before = last.iter().skip(1).copied().chain([(0, scale)]);
+    let ratio = |(m, before): (usize, f64), (n, size): (usize, f64)| {
+        (size / before).powf(1.0 / (n - m) as f64)
+    };
+    let roots = last.iter().map(|term| ratio((0, scale), *term));
+    let quotients = last.iter().zip(before).map(|(term, before)| ratio(before, *term));
+    roots.chain(quotients).collect()
 }
 
 /// The larger one; NaN if one of them is.
@@ -110,10 +123,7 @@ impl Rest {
         let of_x = self.of_x(full, amplitudes);
         let scale = of_x.first().copied().unwrap_or_default();
         let lists = [(of_x, scale), (self.sizes(amplitudes), self.frequency)];
-        let roots = lists.iter().flat_map(|(sizes, scale)| {
-            last_two(sizes).map(move |(n, size)| (size / scale).powf(1.0 / n as f64))
-        });
-        roots.fold(0.0, largest)
+        lists.iter().flat_map(|(sizes, scale)| falls(sizes, *scale)).fold(0.0, largest)
     }
 
     /// The rests of a'/a and psi', q < 1.

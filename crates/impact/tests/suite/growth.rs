@@ -2,7 +2,7 @@
 
 use crate::support::{Random, exact, orbit_number, random_orbit};
 use lindstedt_impact::characteristic::{Characteristic, Kick};
-use lindstedt_impact::kick::piecewise_growth;
+use lindstedt_impact::kick::{piecewise_growth, piecewise_stable};
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::ExactParameters;
@@ -80,4 +80,44 @@ fn a_growth_near_one_is_undecided() {
     };
     assert_eq!(near.verdict, Verdict::Neutral);
     assert!(near.zeros_in_unit_disc.is_some());
+}
+
+/// Away from 1 the rate decides as it does with finer flights; bisected to 1 it decides nothing.
+#[test]
+fn growth_near_one_is_undecided() {
+    let mut random = Random(78);
+    let (mut undecided, mut count) = (0, 0);
+    while count < 20 {
+        let mut p = random_orbit(&mut random);
+        p.velocity_gain = random.between(-0.2, 0.2);
+        let mut at = |gain: f64| {
+            p.displacement_gain = gain;
+            let found = orbit(&p).ok()?;
+            let growth = piecewise_growth(&p, &found, 400).ok()?;
+            Some((growth, piecewise_stable(&p, &found, 400).ok()?))
+        };
+        let (mut low, mut high) = (-0.3, 0.3);
+        let ends = [low, high].map(&mut at);
+        let [Some((first, a)), Some((second, b))] = ends else { continue };
+        for (growth, stable) in [(first, a), (second, b)] {
+            let far = (growth.rate - 1.0).abs() > growth.error;
+            assert_eq!(stable, far.then_some(growth.rate < 1.0), "{growth:?}");
+        }
+        count += 1;
+        if (first.rate < 1.0) == (second.rate < 1.0) {
+            continue;
+        }
+        for _ in 0..50 {
+            let middle = f64::midpoint(low, high);
+            let Some((growth, _)) = at(middle) else { break };
+            let end = if (growth.rate < 1.0) == (first.rate < 1.0) { &mut low } else { &mut high };
+            *end = middle;
+        }
+        let Some((growth, stable)) = at(low) else { continue };
+        if (growth.rate - 1.0).abs() < 1e-12 {
+            assert_eq!(stable, None, "{growth:?}");
+            undecided += 1;
+        }
+    }
+    assert!(undecided > 2, "{undecided}");
 }

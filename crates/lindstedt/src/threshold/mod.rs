@@ -264,7 +264,8 @@ impl Oscillator {
             if first.is_empty() {
                 first.push(&value.gamma_c);
             }
-            value.second_order = splitting::list(&subject, &first)?;
+            let list = splitting::list(&subject, &first);
+            value.second_order = list.map_err(|error| stopped(error, work))?;
         }
         value.sweep = sweep::compute(&subject, swept, question.part)?;
         value.remarks = subject.remarks(&value);

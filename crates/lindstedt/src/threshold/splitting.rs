@@ -24,6 +24,10 @@ pub struct SecondOrderThreshold {
     pub gamma_c: Number,
     /// Its derivative by the small parameter at 0, by Melnikov's integral of second order.
     pub slope: Number,
+    /// The derivative for negative values of the small parameter, where it is another one: of several equal extrema of
+    /// the work each has a tangency, and the first is the threshold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope_below: Option<Number>,
     /// The same from the manifolds themselves, of a loop.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub manifolds: Option<Manifolds>,
@@ -69,7 +73,7 @@ pub(super) fn list(
     first: &[&Number],
 ) -> Result<Vec<SecondOrderThreshold>, Error> {
     let problem = subject.splitting()?;
-    let orbits = problem.orbits();
+    let orbits = problem.orbits(&subject.work.stop);
     let saddle = |orbit: &OrbitSplitting| orbit.orbit.saddles[0];
     let several = orbits.iter().any(|orbit| is_loop(orbit) && saddle(orbit) != saddle(&orbits[0]));
     let mut list = Vec::new();
@@ -113,6 +117,9 @@ pub(super) fn list(
             parameter: subject.oscillator.problem().small.to_string(),
             gamma_c: estimated(gamma, found.signed_error + 2.0 * gap(found))?,
             slope: estimated(found.slope, found.error)?,
+            slope_below: several_slopes(found)
+                .then(|| estimated(found.slope_below, found.error))
+                .transpose()?,
             manifolds,
             not_followed,
         });
@@ -122,6 +129,11 @@ pub(super) fn list(
 
 fn is_loop(orbit: &OrbitSplitting) -> bool {
     orbit.orbit.saddles[0] == orbit.orbit.saddles[1]
+}
+
+/// Whether equal extrema of the work have tangencies of different slopes.
+fn several_slopes(found: &SecondOrder) -> bool {
+    (found.slope_below - found.slope).abs() > 2.0 * found.error
 }
 
 fn is_another(line: &TangencyLine, found: &SecondOrder) -> bool {

@@ -38,6 +38,7 @@ fn odd_friction_leaves_no_slope() {
         period: 2.0 * PI / 1.3,
         harmonics: 1,
         kink: None,
+        stop: &Default::default(),
     };
     let orbit = Connection { saddles: [0.0, 0.0], middle: 1.5 };
     let found = splitting.second_order(&orbit).unwrap();
@@ -153,6 +154,7 @@ fn pendulum_against_its_manifolds() {
         period: 2.0 * PI,
         harmonics: 2,
         kink: None,
+        stop: &Default::default(),
     };
     let found = splitting.second_order(&Connection { saddles: [-PI, PI], middle: 0.0 }).unwrap();
     // D = 8 + 4 pi q; F = 2 pi (sech(pi/2) cos t + sech(pi) sin(2 t)/2) has its maximum where this is least.

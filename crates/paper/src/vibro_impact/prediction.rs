@@ -9,7 +9,7 @@ use lindstedt::Error;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::equivalent::{Drive, equivalent_orbit};
 use lindstedt_impact::flow::{Flow, rates};
-use lindstedt_impact::kick::piecewise_growth;
+use lindstedt_impact::kick::piecewise_stable;
 use lindstedt_impact::map::Verdict as Stability;
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
@@ -94,6 +94,8 @@ pub struct Sample {
     pub points: usize,
     /// Of these, truly stable.
     pub stable: usize,
+    /// Of these, points whose growth is within its error of 1: compared with nothing.
+    pub undecided: usize,
     /// The rules.
     #[serde(rename = "rules")]
     pub rates: Vec<Rate>,
@@ -128,15 +130,17 @@ fn parameters(
     }
 }
 
-/// Whether the orbit is stable: in truth, and by every rule (nothing: it predicts nothing).
-fn verdicts(p: &Parameters<f64>) -> Option<(bool, [Option<bool>; RULES.len()])> {
+/// Whether the orbit is stable: in truth (nothing: undecided), and by every rule (nothing: it predicts nothing).
+type Verdicts = (Option<bool>, [Option<bool>; RULES.len()]);
+
+fn verdicts(p: &Parameters<f64>) -> Option<Verdicts> {
     let found = orbit(p).ok()?;
     let stable = |verdict| verdict == Stability::Stable;
     let g = |kick| stable(exact_verdict(&Characteristic::new(p, &found, kick)).0);
     let truth = if p.velocity_gain == 0.0 {
-        g(Kick::None)
+        Some(g(Kick::None))
     } else {
-        piecewise_growth(p, &found, FLIGHTS).ok()?.rate < 1.0
+        piecewise_stable(p, &found, FLIGHTS).ok()?
     };
     let flow = predicted_flow(p, &rates(p, 1), 1).ok()?;
     let predicted = |variant| {
@@ -158,6 +162,7 @@ fn verdicts(p: &Parameters<f64>) -> Option<(bool, [Option<bool>; RULES.len()])> 
 struct Counts {
     points: usize,
     stable: usize,
+    undecided: usize,
     compared: [usize; RULES.len()],
     equal: [usize; RULES.len()],
     /// R < 0 and unstable, R >= 0 and stable.
@@ -168,6 +173,7 @@ impl Counts {
     fn add(&mut self, other: &Self) {
         self.points += other.points;
         self.stable += other.stable;
+        self.undecided += other.undecided;
         let pairs = self.compared.iter_mut().zip(other.compared);
         let pairs = pairs.chain(self.equal.iter_mut().zip(other.equal));
         pairs
@@ -186,7 +192,9 @@ impl Counts {
             let rate = equal as f64 / compared as f64;
             Rate { rule, compared, equal, rate }
         };
-        Sample { points: self.points, stable: self.stable, rates: counts.map(rate).collect() }
+        let rates = counts.map(rate).collect();
+        let Self { points, stable, undecided, .. } = *self;
+        Sample { points, stable, undecided, rates }
     }
 
     fn cells(&self, name: &str) -> Vec<String> {
@@ -215,6 +223,10 @@ fn count(base: &Parameters<f64>, side: i32) -> Counts {
         .collect();
     let mut counts = Counts { points: points.len(), ..Counts::default() };
     for (truth, rules) in points {
+        let Some(truth) = truth else {
+            counts.undecided += 1;
+            continue;
+        };
         counts.stable += usize::from(truth);
         for (rule, says) in rules.into_iter().enumerate() {
             let Some(says) = says else { continue };
@@ -332,9 +344,14 @@ fn agreement(rows: Vec<Vec<String>>, side: i32, counts: &Counts) -> Table {
              exists; with the saltation of the true orbit. $G$: its zeros, with the mean kick"
                 .to_owned(),
             format!(
-                "{} points without O8, {} of them stable; O8 lies on the lower branch, which no \
+                "{} points without O8, {} of them stable{}; O8 lies on the lower branch, which no \
                  loop of this kind stabilises",
-                counts.points, counts.stable
+                counts.points,
+                counts.stable,
+                match counts.undecided {
+                    0 => String::new(),
+                    n => format!(", {n} undecided: their growth is within its error of 1"),
+                }
             ),
         ]),
     }

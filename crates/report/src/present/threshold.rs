@@ -121,6 +121,9 @@ fn second_order(found: &SecondOrderThreshold) -> Vec<Line> {
     };
     let name = |words: &str| gamma_c(&format!(" to second order{words}, {}", found.name));
     let mut lines = vec![(name(""), sum(&found.gamma_c, &found.slope))];
+    if let Some(slope) = &found.slope_below {
+        lines.push((name(&format!(" for {small} < 0")), sum(&found.gamma_c, slope)));
+    }
     if let Some(manifolds) = &found.manifolds {
         lines.push((name(" from the manifolds"), sum(&manifolds.gamma_c, &manifolds.slope)));
     }

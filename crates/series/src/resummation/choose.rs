@@ -1,6 +1,6 @@
 //! One method or the best of all, with the rounding measured and kept below the rest.
 
-use super::estimate::distance;
+use super::estimate::{Tentative, distance};
 use super::made::Made;
 use super::{Growth, Method, Outcome, ResummationError, Sample, Shared, Singularity, growth};
 use lindstedt_algebra::Stop;
@@ -28,6 +28,8 @@ pub struct Resummed {
 const SELECTION: u32 = 4;
 /// What the distance from an independent method is multiplied by.
 const AGREEMENT: u32 = 4;
+/// The same where they are compared at two orders.
+const TWICE: u32 = 2;
 /// Doublings of the precision before the rounding is added to the error as it is.
 const DOUBLINGS: u32 = 4;
 
@@ -182,14 +184,8 @@ impl Sample {
         if several && !self.has_known_tail(method) {
             outcome.estimate.error *= SELECTION;
         }
-        // Two sequences that share no approximants agree to the error of the worse one: where
-        // they do, the less cautious estimate of the better one counts.
         let others = values.iter().filter(|(m, _)| Self::are_independent(*m, method));
-        let gaps = others.map(|(_, o)| distance(&o.estimate.value, &own.value));
-        if let Some(tentative) = &outcome.tentative
-            && let Some(gap) = gaps.reduce(|a, b| a.min(&b))
-        {
-            let agreed = gap.max(tentative) * AGREEMENT;
+        if let Some(agreed) = agreement(&outcome, others.map(|(_, other)| other)) {
             outcome.estimate.error = outcome.estimate.error.min(&agreed);
         }
         for (_, other) in values {
@@ -204,6 +200,19 @@ impl Sample {
         }
         Some((best?, outcome))
     }
+}
+
+/// Two sequences that share no approximants agree to the error of the worse one: where they do, the less cautious estimate of
+/// the better one counts. It counts for less where they agree at two orders one after the other: that they meet by
+/// chance at both is rare, and the larger distance, the earlier one less by what the error falls, is the error of the worse.
+fn agreement<'a>(own: &Outcome, others: impl Iterator<Item = &'a Outcome>) -> Option<Float> {
+    let tentative = own.tentative.as_ref().filter(|tentative| tentative.error.is_finite())?;
+    let gap = |other: &Outcome| distance(&other.estimate.value, &own.estimate.value);
+    let nearest = others.min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+    let once = gap(nearest).max(&tentative.error) * AGREEMENT;
+    let Some(other) = &nearest.tentative else { return Some(once) };
+    let earlier = distance(&other.before, &tentative.before) * tentative.ratio;
+    Some(once.min(&(gap(nearest).max(&earlier) * TWICE)))
 }
 
 /// A sample with what was made of its series.
@@ -238,7 +247,7 @@ fn settled(
     let asked = Float::with_val(53, after.estimate.value.abs_ref()) >> accuracy;
     let rounding = rounding.max(&size.min(&asked));
     after.estimate.error += &rounding;
-    after.tentative = after.tentative.map(|error| error + rounding);
+    after.tentative = after.tentative.map(|t| Tentative { error: t.error + rounding, ..t });
     Ok((after, bits))
 }
 

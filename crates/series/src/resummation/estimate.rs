@@ -27,11 +27,33 @@ pub struct Outcome {
     pub order: usize,
     /// Degrees of the numerator and the denominator, for the methods with Pade approximants.
     pub degrees: Option<(usize, usize)>,
-    /// A less cautious estimate of the error, which means something only where a method that shares
-    /// no approximants with this one agrees; nothing where there is none.
-    pub tentative: Option<Float>,
+    /// What means something only where a method that shares no approximants with this one agrees; nothing where there is
+    /// none.
+    pub tentative: Option<Tentative>,
     /// The order of the smallest term, where the series was cut there because it diverges.
     pub smallest_term: Option<usize>,
+}
+
+/// Of a sequence of approximants what is compared with that of another method.
+#[derive(Clone, Debug)]
+pub struct Tentative {
+    /// A less cautious estimate of the error; infinite where there is none.
+    pub error: Float,
+    /// The approximant of one order less.
+    pub before: Float,
+    /// By what the error falls from one order to the next, at most 1.
+    pub ratio: f64,
+}
+
+impl Tentative {
+    /// The same of all approximants times a factor.
+    #[must_use]
+    pub(super) fn scaled(mut self, factor: &Float) -> Self {
+        let size = Float::with_val(53, factor.abs_ref());
+        self.before *= factor;
+        self.error *= size;
+        self
+    }
 }
 
 /// |a - b| in 53 bits.
@@ -113,7 +135,7 @@ fn by_line(points: &[(f64, f64)], end: f64) -> Option<Float> {
 /// r the largest of the points above the line (differences that are small by accident lie below and
 /// do not count), l = sqrt(1 + 1/n + (N + 2 - m)^2/sum (k - m)^2); at least the distance from the two
 /// approximants before. Of 733 sums of random functions it alone is too small for 17.
-pub(super) fn tentative(values: &[Float], number: usize) -> Option<Float> {
+pub(super) fn tentative(values: &[Float], number: usize) -> Option<Tentative> {
     let (value, before) = values.split_last()?;
     if number < FEWEST || before.len() < 2 {
         return None;
@@ -133,7 +155,8 @@ pub(super) fn tentative(values: &[Float], number: usize) -> Option<Float> {
     }
     let error = Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio);
     let near = before.get(before.len() - 2..)?;
-    Some(error.max(&spread(near, value)?))
+    let error = error.max(&spread(near, value)?);
+    Some(Tentative { error, before: before.last()?.clone(), ratio })
 }
 
 /// The second judgment of [`settle`]; nothing with fewer than eight values before the last one.

@@ -8,6 +8,7 @@ use super::staircase::Staircase;
 use super::{Estimate, Method, Outcome, Pade, Picture, ResummationError, Sample, Singularity};
 use lindstedt_algebra::Stop;
 use rug::Float;
+use rug::float::Special;
 use std::sync::Arc;
 
 /// A method's variable and sum, or why there is none.
@@ -172,7 +173,10 @@ impl Sample {
             let nodes = made.nodes(asked, stop);
             let value = |pade: &Pade| Ok((laplace(pade, &self.point, &nodes)?, None));
             let mut outcome = stairs.judged(&widest, value, stop)?;
-            outcome.tentative = None;
+            // The line of its differences is no judgment of its own, its approximants are those of another method.
+            if let Some(tentative) = &mut outcome.tentative {
+                tentative.error = Float::with_val(53, Special::Infinity);
+            }
             let size = Float::with_val(53, outcome.estimate.value.abs_ref());
             // What the integral was not asked for.
             let rest = size >> asked;

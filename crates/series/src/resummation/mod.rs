@@ -30,7 +30,7 @@ pub use choose::{Resummed, resum, resum_until, resum_with};
 pub use compiled::{Compiled, Estimated};
 pub use complex::Complex;
 pub use error::ResummationError;
-pub use estimate::{Estimate, Outcome};
+pub use estimate::{Estimate, Outcome, Tentative};
 pub use growth::{Growth, growth};
 pub use maps::Map;
 pub use method::{Method, Sample, UniformMap};

@@ -130,6 +130,6 @@ fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
     outcome.estimate.value *= factor;
     let size = Float::with_val(53, factor.abs_ref());
     outcome.estimate.error *= &size;
-    outcome.tentative = outcome.tentative.map(|error| error * size);
+    outcome.tentative = outcome.tentative.map(|tentative| tentative.scaled(factor));
     outcome
 }
