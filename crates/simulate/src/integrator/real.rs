@@ -3,7 +3,7 @@
 //! The context value owns the precision; elements are bare. Operations write to a place that
 //! exists already, so that the inner loops allocate nothing.
 
-use super::{Integrator, Observer};
+use super::{Integrator, Observer, Together};
 use crate::error::SimulateError;
 use crate::outcome::Outcome;
 use rug::float::Constant;
@@ -147,6 +147,14 @@ pub trait Real: Clone + Debug + Send + Sync + Sized {
     /// # Errors
     /// As there.
     fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError>;
+
+    /// So many integrations this arithmetic takes side by side.
+    const LANES: usize = 1;
+
+    /// Some integrations side by side, with the numbers that each has alone; nothing where they cannot be.
+    fn together(_: &[&Integrator<'_, Self>]) -> Option<Box<dyn Together<Self>>> {
+        None
+    }
 }
 
 /// The arithmetic of f64.
@@ -165,6 +173,10 @@ impl Real for Doubles {
     }
     fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
         flow.begin_here()
+    }
+    const LANES: usize = 8;
+    fn together(flows: &[&Integrator<'_, Self>]) -> Option<Box<dyn Together<Self>>> {
+        Integrator::side_by_side(flows)
     }
 
     fn bits(&self) -> u32 {
