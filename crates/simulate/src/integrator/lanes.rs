@@ -299,6 +299,8 @@ mod tests {
             }
             assert_eq!((flow.state(), flow.time()), (alone.state(), alone.time()));
             assert_eq!(flow.work().steps, alone.work().steps);
+            // Every coefficient: the last ones do not reach the state.
+            assert_eq!(flow.series.rows.data, alone.series.rows.data);
         }
         let other = system(2);
         let one = Model::second_order(&(Expression::ACCELERATION + x)).unwrap();
