@@ -2,12 +2,12 @@
 //! parameter.
 //!
 //! Every column depends on its parameter value and the start alone, so columns are computed in
-//! parallel, handed over in order, and a diagram broken off anywhere goes on from the first column
+//! parallel, in doubles several of a stroboscopic section side by side on each thread, handed over in order, and a diagram broken off anywhere goes on from the first column
 //! that is missing with the same numbers as in one go.
 
 use crate::error::SimulateError;
-use crate::integrator::Settings;
 use crate::integrator::real::Real;
+use crate::integrator::{Next, Settings};
 use crate::poincare::{PoincareMap, Point, Section};
 use crate::quantity::{Parameters, Quantity};
 use crate::system::{Model, System};
@@ -64,6 +64,16 @@ pub struct DiagramSettings<E> {
     pub integration: Settings,
 }
 
+impl<E: Clone> DiagramSettings<E> {
+    fn section_of(&self, column: usize) -> Section<E> {
+        let own = self.periods.get(column).map(|period| Section::Period(period.clone()));
+        own.unwrap_or_else(|| self.section.clone())
+    }
+    fn count(&self) -> u64 {
+        u64::from(self.transient) + u64::from(self.kept)
+    }
+}
+
 /// The points over one parameter value, in order of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column<E> {
@@ -84,7 +94,7 @@ pub struct Column<E> {
 /// last column. The numbers are the same as in one go, bit by bit. Columns outside of the sweep
 /// are left out.
 ///
-/// Cost: (transient + kept) periods of the integration per column; memory: the points of 4
+/// Cost: (transient + kept) periods of the integration per column; memory: the points of 16
 /// columns per thread.
 ///
 /// ```
@@ -129,7 +139,7 @@ pub fn diagram<R: Real>(
     observer: &mut dyn FnMut(Column<R::Element>) -> ControlFlow<()>,
 ) -> usize {
     let end = range.end.min(sweep.values.len());
-    let block = if settings.follow { 1 } else { 4 * rayon::current_num_threads() };
+    let block = if settings.follow { 1 } else { 16 * rayon::current_num_threads() };
     let mut start = settings.start.clone();
     let mut next = range.start;
     while next < end {
@@ -137,10 +147,16 @@ pub fn diagram<R: Real>(
         let columns: Vec<_> = if settings.follow {
             indices.map(|index| column(sweep, real, settings, &start, index, tick)).collect()
         } else {
-            let parallel = indices.into_par_iter().with_max_len(1);
-            parallel
-                .map(|index| column(sweep, real, settings, &settings.start, index, tick))
-                .collect()
+            let groups: Vec<_> = indices.clone().step_by(R::LANES).collect();
+            let group = |first: usize| {
+                let own = first..indices.end.min(first + R::LANES);
+                together(sweep, real, settings, own.clone(), tick).unwrap_or_else(|| {
+                    let start = &settings.start;
+                    own.map(|index| column(sweep, real, settings, start, index, tick)).collect()
+                })
+            };
+            let parallel = groups.into_par_iter().with_max_len(1);
+            parallel.map(group).collect::<Vec<_>>().into_iter().flatten().collect()
         };
         for column in columns {
             let Some(column) = column else { return next };
@@ -169,9 +185,7 @@ fn column<R: Real>(
     let points = sweep.system(real.clone(), index)?;
     let points = match points {
         Ok(system) => {
-            let own = settings.periods.get(index).map(|period| Section::Period(period.clone()));
-            let section = own.unwrap_or_else(|| settings.section.clone());
-            collect(&system, settings, section, start, tick).transpose()?
+            collect(&system, settings, settings.section_of(index), start, tick).transpose()?
         }
         Err(error) => Err(error),
     };
@@ -189,7 +203,7 @@ fn collect<R: Real>(
 ) -> Result<Option<Points<R::Element>>, SimulateError> {
     let mut map = PoincareMap::new(system, &settings.time, start, section, settings.integration)?;
     let mut points = Vec::new();
-    for count in 0..u64::from(settings.transient) + u64::from(settings.kept) {
+    for count in 0..settings.count() {
         if tick().is_break() {
             return Ok(None);
         }
@@ -203,4 +217,81 @@ fn collect<R: Real>(
         }
     }
     Ok(Some(points))
+}
+
+/// A column in progress among others: its points, or nothing if it was broken off.
+struct Run<'s, R: Real> {
+    map: PoincareMap<'s, R>,
+    /// When the next point is.
+    target: Option<R::Element>,
+    found: u64,
+    points: Result<Option<Points<R::Element>>, SimulateError>,
+}
+
+impl<R: Real> Run<'_, R> {
+    /// Looks for the next point, if there is one to look for.
+    fn aim(&mut self, count: u64, tick: &(dyn Fn() -> ControlFlow<()> + Sync)) {
+        if self.target.is_some() || self.found == count || !matches!(self.points, Ok(Some(_))) {
+            return;
+        }
+        match tick() {
+            ControlFlow::Break(()) => self.points = Ok(None),
+            ControlFlow::Continue(()) => self.target = self.map.next_time(),
+        }
+    }
+
+    fn hear(&mut self, told: Result<Next, SimulateError>, transient: u32) {
+        match told {
+            Ok(Next::Idle | Next::Moved) => return,
+            Ok(Next::Reached) => {
+                let point = self.target.take().map(|time| self.map.point_at(time));
+                if let (Ok(Some(points)), true) =
+                    (&mut self.points, self.found >= u64::from(transient))
+                {
+                    points.extend(point);
+                }
+                self.found += 1;
+            }
+            Ok(Next::Stopped) | Err(SimulateError::Stopped) => self.points = Ok(None),
+            Err(error) => self.points = Err(error),
+        }
+        self.target = None;
+    }
+}
+
+/// Some columns side by side; nothing where that cannot be.
+fn together<R: Real>(
+    sweep: &Sweep<'_>,
+    real: &R,
+    settings: &DiagramSettings<R::Element>,
+    indices: Range<usize>,
+    tick: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Option<Vec<Option<Column<R::Element>>>> {
+    if indices.len() < 2 || indices.clone().any(|index| !settings.section_of(index).is_strobe()) {
+        return None;
+    }
+    let system = |index| sweep.system(real.clone(), index)?.ok();
+    let systems: Vec<System<R>> = indices.clone().map(system).collect::<Option<_>>()?;
+    let run = |(index, system)| {
+        let (time, start, section) = (&settings.time, &settings.start, settings.section_of(index));
+        let map = PoincareMap::new(system, time, start, section, settings.integration).ok()?;
+        Some(Run { map, target: None, found: 0, points: Ok(Some(Vec::new())) })
+    };
+    let mut runs: Vec<Run<'_, R>> =
+        indices.clone().zip(&systems).map(run).collect::<Option<_>>()?;
+    let flows: Vec<_> = runs.iter().map(|run| run.map.flow()).collect();
+    let mut group = R::together(&flows)?;
+    loop {
+        runs.iter_mut().for_each(|run| run.aim(settings.count(), tick));
+        if runs.iter().all(|run| run.target.is_none()) {
+            break;
+        }
+        let mut flows: Vec<_> =
+            runs.iter_mut().map(|run| (run.map.flow_mut(), run.target.clone())).collect();
+        let told = group.round(&mut flows, tick);
+        runs.iter_mut().zip(told).for_each(|(run, told)| run.hear(told, settings.transient));
+    }
+    let column =
+        |(index, run): (usize, Run<'_, R>)| Some(Column { index, points: run.points.transpose()? });
+    Some(indices.zip(runs).map(column).collect())
 }

@@ -9,10 +9,10 @@
 //! side. Where w does not pass zero with a speed the branch point is refused.
 
 use crate::error::SimulateError;
+use crate::integrator::arithmetic::LEAP;
 use crate::integrator::real::Real;
 use crate::integrator::{Integrator, Observer};
 use crate::report::EventKind;
-use crate::tape::LEAP;
 use std::ops::ControlFlow;
 
 /// A branch point ahead.

@@ -60,6 +60,7 @@ impl<'a, R: Real> Compiler<'a, R> {
                 affine: Vec::new(),
                 live: Vec::new(),
                 curved: Vec::new(),
+                needed: Vec::new(),
                 steps: Vec::new(),
                 constants: Vec::new(),
             },

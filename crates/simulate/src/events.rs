@@ -1,11 +1,12 @@
 //! Which surface is met first, and what happens there.
 
 use crate::error::{SimulateError, Surface};
+use crate::integrator::arithmetic::LEAP;
 use crate::integrator::real::Real;
 use crate::integrator::{Hit, Integrator, Observer};
 use crate::report::{Event, EventKind, Report};
 use crate::roots::AtCluster;
-use crate::tape::{LEAP, Op};
+use crate::tape::Op;
 use std::ops::ControlFlow;
 
 /// The first root, and no cluster before it.

@@ -1,5 +1,7 @@
 //! The integrator: steps, and the loop over them.
 
+pub(crate) mod arithmetic;
+mod lanes;
 pub(crate) mod real;
 
 use crate::error::{SimulateError, Surface};
@@ -78,7 +80,32 @@ pub struct Integrator<'s, R: Real> {
     pub(crate) log2_start: f64,
     /// Where the present run towards infinity began.
     runaway: Option<Runaway>,
+    /// Whether the series is that about the present state.
+    expanded: bool,
     pub(crate) work: Work,
+}
+
+/// Several integrations side by side, up to [`Real::LANES`] of them.
+pub trait Together<R: Real>: Send {
+    /// One step of every integration that has a target, or none where it is reached.
+    fn round(
+        &mut self,
+        flows: &mut [(&mut Integrator<'_, R>, Option<R::Element>)],
+        tick: &Tick<'_>,
+    ) -> Vec<Result<Next, SimulateError>>;
+}
+
+/// What one step towards a target came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// There is no target.
+    Idle,
+    /// It goes on.
+    Moved,
+    /// The target is reached; there was no step.
+    Reached,
+    /// The tick broke it off.
+    Stopped,
 }
 
 /// The step at which x, on its way from zero, counted as escaping (see [`Integrator::escapes`]).
@@ -157,6 +184,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             stalled: 0,
             log2_start: if log2_start.is_finite() { log2_start } else { 0.0 },
             runaway: None,
+            expanded: false,
             work: Work::default(),
         };
         R::begin(&mut flow)?;
@@ -254,6 +282,23 @@ impl<'s, R: Real> Integrator<'s, R> {
         }
     }
 
+    /// Whether a target is not ahead.
+    fn has_reached(&self, target: &R::Element) -> bool {
+        let real = &self.system.real;
+        real.sign(&Clock::new(real, target).since(real, &self.clock)) <= 0
+    }
+
+    /// One step of [`Self::advance_while`].
+    fn next(&mut self, target: &R::Element, tick: &Tick<'_>) -> Result<Next, SimulateError> {
+        let target = Clock::new(&self.system.real, target);
+        let remaining = target.since(&self.system.real, &self.clock);
+        if self.system.real.sign(&remaining) <= 0 {
+            return Ok(Next::Reached);
+        }
+        let told = self.step(&remaining, &target, &mut |_| tick())?;
+        Ok(if told.is_break() { Next::Stopped } else { Next::Moved })
+    }
+
     fn step(
         &mut self,
         remaining: &R::Element,
@@ -261,7 +306,11 @@ impl<'s, R: Real> Integrator<'s, R> {
         observer: &mut Observer<'_, R>,
     ) -> Result<ControlFlow<()>, SimulateError> {
         let order = self.series.order;
-        let limit = match self.expand_while(order, &mut || observer(&Report::Busy)) {
+        let expanded = match std::mem::take(&mut self.expanded) {
+            true => Ok(None),
+            false => self.expand_while(order, &mut || observer(&Report::Busy)),
+        };
+        let limit = match expanded {
             // The state is that at the end of the step before.
             Err(SimulateError::Stopped) => return Ok(ControlFlow::Break(())),
             found => found?,

@@ -81,7 +81,7 @@ pub use digits::Digits;
 pub use error::{SimulateError, Surface};
 pub use estimate::{Computation, Estimated, estimate};
 pub use integrator::real::{Doubles, Real};
-pub use integrator::{Integrator, Observer, Settings, Tick, go_on};
+pub use integrator::{Integrator, Next, Observer, Settings, Tick, Together, go_on};
 pub use keeper::{Cut, Flow, Plan};
 pub use linear::{Monodromy, monodromy, monodromy_while};
 pub use lyapunov::{LyapunovExponent, LyapunovSettings, largest_lyapunov_exponent};

@@ -34,6 +34,13 @@ pub enum Section<E> {
     },
 }
 
+impl<E> Section<E> {
+    /// Whether the times of the points are known.
+    pub(crate) fn is_strobe(&self) -> bool {
+        matches!(self, Self::Period(_) | Self::Strobe { .. })
+    }
+}
+
 /// A point of a Poincare section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point<E> {
@@ -108,13 +115,12 @@ impl<'s, R: Real> PoincareMap<'s, R> {
         &mut self,
         tick: &Tick<'_>,
     ) -> Result<Option<Point<R::Element>>, SimulateError> {
-        match self.section.clone() {
-            Section::Period(period) => self.strobe(&period.clone(), period, tick).map(Some),
-            Section::Strobe { first, period } => self.strobe(&first, period, tick).map(Some),
-            Section::Events { surface, rising, patience } => {
-                self.event((surface, rising), &patience, tick)
-            }
+        if let Section::Events { surface, rising, patience } = self.section.clone() {
+            return self.event((surface, rising), &patience, tick);
         }
+        let Some(target) = self.next_time() else { return Ok(None) };
+        self.flow.advance_while(&target, tick)?;
+        Ok(Some(self.point_at(target)))
     }
 
     /// The integration behind the map.
@@ -123,24 +129,36 @@ impl<'s, R: Real> PoincareMap<'s, R> {
         &self.flow
     }
 
-    fn strobe(
-        &mut self,
-        first: &R::Element,
-        mut period: R::Element,
-        tick: &Tick<'_>,
-    ) -> Result<Point<R::Element>, SimulateError> {
+    /// The integration, to be advanced from outside.
+    pub(crate) fn flow_mut(&mut self) -> &mut Integrator<'s, R> {
+        &mut self.flow
+    }
+
+    /// When the next point of a stroboscopic map is; nothing for another.
+    pub(crate) fn next_time(&mut self) -> Option<R::Element> {
+        match self.section.clone() {
+            Section::Period(period) => Some(self.strobe_time(&period.clone(), period)),
+            Section::Strobe { first, period } => Some(self.strobe_time(&first, period)),
+            Section::Events { .. } => None,
+        }
+    }
+
+    fn strobe_time(&mut self, first: &R::Element, mut period: R::Element) -> R::Element {
         let real = &self.flow.system.real;
         // One rounding for k periods: first = period is the multiple k + 1.
         let same = *first == period;
         real.times_integer(&mut period, self.count + i32::from(same));
         self.count += 1;
         let since = if same { period } else { real.sum(first, &period) };
-        let target = real.sum(&self.start, &since);
-        self.flow.advance_while(&target, tick)?;
+        real.sum(&self.start, &since)
+    }
+
+    /// The point where the integration is, at the time of a stroboscopic map.
+    pub(crate) fn point_at(&self, time: R::Element) -> Point<R::Element> {
         let state = self.flow.state()[..self.flow.system.variables].to_vec();
         let (modes, contact) = (self.flow.modes().to_vec(), self.flow.contact());
         let before = state.clone();
-        Ok(Point { time: target, state, before, modes, contact })
+        Point { time, state, before, modes, contact }
     }
 
     fn event(

@@ -192,11 +192,7 @@ impl<R: Real> Series<R> {
 
     /// log2 of the largest coefficient of level `n` of the states in `range`.
     fn norm(&self, real: &R, range: std::ops::Range<usize>, n: usize) -> f64 {
-        let logs = range.map(|state| real.log2(self.rows.at(state, n)));
-        logs.fold(
-            f64::NEG_INFINITY,
-            |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) },
-        )
+        real.log2_of_largest(range.map(|state| self.rows.at(state, n)))
     }
 
     /// The longest step h with |x_m| h^m <= tolerance max_{k<3} |x_k| h^k for m = p - 1, p, in

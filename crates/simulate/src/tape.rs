@@ -9,7 +9,7 @@
 mod sums;
 
 use self::sums::{Step, square, steps};
-use crate::integrator::real::Real;
+use crate::integrator::arithmetic::Arithmetic;
 
 /// One operation; the numbers are rows unless the name says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,10 +77,6 @@ impl Op {
     }
 }
 
-/// The mode of a switch whose argument w is being carried through zero: |w| and sign w are zero,
-/// and what is raised to a power or divided by there.
-pub(crate) const LEAP: i8 = 2;
-
 /// States, operations, constants.
 #[derive(Clone, Debug)]
 pub(crate) struct Tape<E> {
@@ -93,6 +89,8 @@ pub(crate) struct Tape<E> {
     pub(crate) curved: Vec<usize>,
     /// These, sums of one degree in one pass.
     pub(crate) steps: Vec<Step<E>>,
+    /// The rows that are read from outside.
+    pub(crate) needed: Vec<usize>,
     pub(crate) constants: Vec<E>,
 }
 
@@ -125,13 +123,13 @@ impl<E: Clone> Rows<E> {
     }
 }
 
-/// What the recurrences need beside the rows: the time at the start of the step, the sign of
-/// every switch (0: sliding), and two places to compute in.
-pub(crate) struct Moment<'a, E> {
-    pub(crate) time: &'a E,
-    pub(crate) modes: &'a [i8],
-    pub(crate) sum: &'a mut E,
-    pub(crate) scratch: &'a mut E,
+/// What the recurrences need beside the rows: the time at the start of the step, the mode of
+/// every switch, and two places to compute in.
+pub(crate) struct Moment<'a, R: Arithmetic> {
+    pub(crate) time: &'a R::Element,
+    pub(crate) modes: &'a [R::Mode],
+    pub(crate) sum: &'a mut R::Element,
+    pub(crate) scratch: &'a mut R::Element,
 }
 
 impl<E: Clone> Tape<E> {
@@ -140,12 +138,12 @@ impl<E: Clone> Tape<E> {
     }
 
     /// Level `n` of all operations.
-    pub(crate) fn level<R: Real<Element = E>>(
+    pub(crate) fn level<R: Arithmetic<Element = E>>(
         &self,
         real: &R,
         rows: &mut Rows<E>,
         n: usize,
-        moment: &mut Moment<'_, E>,
+        moment: &mut Moment<'_, R>,
     ) {
         // Rows start as zeros: where nothing is written they remain so.
         if n < 2 {
@@ -166,10 +164,35 @@ impl<E: Clone> Tape<E> {
     }
 
     /// Restricts the work to what the given rows need.
-    pub(crate) fn restrict<R: Real<Element = E>>(&mut self, real: &R, needed: Vec<usize>) {
+    pub(crate) fn restrict<R: Arithmetic<Element = E>>(&mut self, real: &R, needed: Vec<usize>) {
         self.live = self.cone(needed.clone());
         self.curved = self.live.iter().copied().filter(|index| !self.affine[*index]).collect();
         self.steps = steps(real, self, &needed);
+        self.needed = needed;
+    }
+
+    /// The tape of several ones that differ in their constants alone, side by side; nothing for others.
+    pub(crate) fn side_by_side<R: Arithmetic>(
+        tapes: &[&Self],
+        real: &R,
+        join: impl Fn(usize) -> R::Element,
+    ) -> Option<Tape<R::Element>> {
+        let (first, rest) = tapes.split_first()?;
+        let same = |tape: &&Self| {
+            (tape.states, &tape.ops, &tape.needed) == (first.states, &first.ops, &first.needed)
+        };
+        let mut tape = Tape {
+            states: first.states,
+            ops: first.ops.clone(),
+            affine: first.affine.clone(),
+            live: Vec::new(),
+            curved: Vec::new(),
+            steps: Vec::new(),
+            needed: Vec::new(),
+            constants: (0..first.constants.len()).map(join).collect(),
+        };
+        tape.restrict(real, first.needed.clone());
+        rest.iter().all(same).then_some(tape)
     }
 
     /// The operations that some rows need, in order.
@@ -193,13 +216,13 @@ impl<E: Clone> Tape<E> {
 
     /// Level `n` of operation `index`.
     #[inline]
-    pub(crate) fn operation<R: Real<Element = E>>(
+    pub(crate) fn operation<R: Arithmetic<Element = E>>(
         &self,
         real: &R,
         rows: &mut Rows<E>,
         index: usize,
         n: usize,
-        moment: &mut Moment<'_, E>,
+        moment: &mut Moment<'_, R>,
     ) {
         let target = self.states + index;
         let sum = &mut *moment.sum;
@@ -207,10 +230,12 @@ impl<E: Clone> Tape<E> {
         let order = n as u32;
         match self.ops[index] {
             Op::Delayed { .. } => return,
-            Op::Control { switch, part } => match (moment.modes[switch], part, n) {
-                (0, ..) => return,
-                (LEAP, ..) => real.set_zero(sum),
-                (mode, 0, 0) => real.set(sum, &real.double(f64::from(mode))),
+            Op::Control { switch, part } => match moment.modes[switch] {
+                mode if real.slides(mode) => return,
+                mode if part == 0 && n == 0 && !real.leaps(mode) => {
+                    real.set(sum, &real.double(1.0));
+                    real.times_sign(sum, mode);
+                }
                 _ => real.set_zero(sum),
             },
             Op::Constant(c) if n == 0 => real.set(sum, &self.constants[c]),
@@ -226,7 +251,8 @@ impl<E: Clone> Tape<E> {
             Op::Multiply(a, b) => real.convolve(sum, &rows.row(a)[..=n], &rows.row(b)[..=n]),
             Op::Square(a) => square(real, sum, &rows.row(a)[..=n]),
             Op::Divide(_, a) | Op::Power(a, _)
-                if real.sign(rows.at(a, 0)) == 0 && moment.modes.contains(&LEAP) =>
+                if moment.modes.iter().any(|mode| real.leaps(*mode))
+                    && real.is_zero(rows.at(a, 0)) =>
             {
                 real.set_zero(sum);
             }
@@ -280,10 +306,10 @@ impl<E: Clone> Tape<E> {
                 real.times_integer(sum, -1);
             }
             Op::Signed(a, switch) => match moment.modes[switch] {
-                0 | LEAP => real.set_zero(sum),
+                mode if real.slides(mode) || real.leaps(mode) => real.set_zero(sum),
                 mode => {
                     real.set(sum, rows.at(a, n));
-                    real.times_integer(sum, i32::from(mode));
+                    real.times_sign(sum, mode);
                 }
             },
         }
@@ -293,7 +319,7 @@ impl<E: Clone> Tape<E> {
 
 /// sum_{j>0} j a_j b_{n-j}; one term if a is affine.
 #[inline]
-fn chain<R: Real>(
+fn chain<R: Arithmetic>(
     real: &R,
     sum: &mut R::Element,
     scratch: &mut R::Element,
@@ -308,7 +334,7 @@ fn chain<R: Real>(
 
 /// to = sum_k c_k s^k (Horner).
 #[inline]
-pub(crate) fn horner<R: Real>(
+pub(crate) fn horner<R: Arithmetic>(
     real: &R,
     to: &mut R::Element,
     coefficients: &[R::Element],

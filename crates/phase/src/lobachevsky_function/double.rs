@@ -33,8 +33,8 @@ const FRAC_PI_2_LOW: f64 = 6.123233995736766e-17;
 /// The Lobachevsky function L(x) = -int_0^x ln|cos t| dt in double precision.
 ///
 /// Domain: every f64; NaN for NaN and infinities. Error: at most 4 ulp (2.8 measured) for
-/// |L(x)| >= 2^-1022; results below that underflow gradually. Cost: some 12 ns; beyond
-/// |x| = 3e6 the certified function is used, which takes some 100 us.
+/// |L(x)| >= 2^-1022; results below that underflow gradually. Cost: 7 ns below 0.6, 10 to 12 ns up to
+/// pi/2, 12 to 17 ns from there on; beyond |x| = 3e6 the certified function is used, which takes some 100 us.
 ///
 /// ```
 /// use lindstedt_phase::lobachevsky_function::lobachevsky_f64;

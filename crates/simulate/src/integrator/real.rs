@@ -3,7 +3,7 @@
 //! The context value owns the precision; elements are bare. Operations write to a place that
 //! exists already, so that the inner loops allocate nothing.
 
-use super::{Integrator, Observer};
+use super::{Integrator, Observer, Together};
 use crate::error::SimulateError;
 use crate::outcome::Outcome;
 use rug::float::Constant;
@@ -34,6 +34,15 @@ pub trait Real: Clone + Debug + Send + Sync + Sized {
     fn sign(&self, x: &Self::Element) -> i8;
     /// log2 |x| to about 1e-10, minus infinity at zero, NaN for what is not finite.
     fn log2(&self, x: &Self::Element) -> f64;
+
+    /// [`Self::log2`] of the largest |x|; minus infinity of none, NaN where one of them is not finite.
+    fn log2_of_largest<'e>(&self, list: impl Iterator<Item = &'e Self::Element>) -> f64
+    where
+        Self::Element: 'e,
+    {
+        let larger = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
+        list.map(|x| self.log2(x)).fold(f64::NEG_INFINITY, larger)
+    }
 
     /// to = x.
     fn set(&self, to: &mut Self::Element, x: &Self::Element);
@@ -147,6 +156,14 @@ pub trait Real: Clone + Debug + Send + Sync + Sized {
     /// # Errors
     /// As there.
     fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError>;
+
+    /// So many integrations this arithmetic takes side by side.
+    const LANES: usize = 1;
+
+    /// Some integrations side by side, with the numbers that each has alone; nothing where they cannot be.
+    fn together(_: &[&Integrator<'_, Self>]) -> Option<Box<dyn Together<Self>>> {
+        None
+    }
 }
 
 /// The arithmetic of f64.
@@ -165,6 +182,10 @@ impl Real for Doubles {
     }
     fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
         flow.begin_here()
+    }
+    const LANES: usize = 8;
+    fn together(flows: &[&Integrator<'_, Self>]) -> Option<Box<dyn Together<Self>>> {
+        Integrator::side_by_side(flows)
     }
 
     fn bits(&self) -> u32 {
@@ -196,6 +217,13 @@ impl Real for Doubles {
     #[inline]
     fn log2(&self, x: &f64) -> f64 {
         if x.is_infinite() { f64::NAN } else { x.abs().log2() }
+    }
+    /// One logarithm.
+    #[inline]
+    fn log2_of_largest<'e>(&self, list: impl Iterator<Item = &'e f64>) -> f64 {
+        let larger =
+            |a: f64, b: &f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b.abs()) };
+        self.log2(&list.fold(0.0, larger))
     }
     #[inline]
     fn set(&self, to: &mut f64, x: &f64) {
@@ -308,5 +336,20 @@ mod tests {
         assert!((digits.log2(&tiny) - (3f64.log2() - 100_000.0)).abs() < 1e-9);
         assert_eq!(digits.log2(&digits.zero()), f64::NEG_INFINITY);
         assert!((Doubles.log2(&0.375) - 0.375f64.log2()).abs() < 1e-15);
+        // The largest of doubles is that of the same numbers as floats.
+        let lists: [&[f64]; 6] = [
+            &[],
+            &[0.0, -0.0],
+            &[1.0, -3.0, 2.5],
+            &[f64::NAN, 1.0],
+            &[1.0, f64::NAN],
+            &[f64::NEG_INFINITY, 1.0],
+        ];
+        for list in lists {
+            let floats: Vec<_> = list.iter().map(|x| digits.double(*x)).collect();
+            let [fast, slow] =
+                [Doubles.log2_of_largest(list.iter()), digits.log2_of_largest(floats.iter())];
+            assert!(fast == slow || (fast - slow).abs() < 1e-15 || fast.is_nan() && slow.is_nan());
+        }
     }
 }

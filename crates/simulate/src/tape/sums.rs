@@ -11,7 +11,7 @@
 //! those of the operations, bit for bit (a zero may have another sign).
 
 use super::{Op, Rows, Tape};
-use crate::integrator::real::Real;
+use crate::integrator::arithmetic::Arithmetic;
 
 /// u of c u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +52,16 @@ pub(crate) enum Step<E> {
     Sum(usize, Sum<E>),
 }
 
+impl<E> Step<E> {
+    /// The row that it writes, behind so many states.
+    pub(crate) fn row(&self, states: usize) -> usize {
+        match self {
+            Self::Operation(index) => states + index,
+            Self::Sum(row, _) => *row,
+        }
+    }
+}
+
 /// A sum of terms, added from the first to the last.
 #[derive(Clone, Debug)]
 pub(crate) struct Sum<E> {
@@ -61,7 +71,7 @@ pub(crate) struct Sum<E> {
 impl<E: Clone> Sum<E> {
     /// sum = its coefficient n.
     #[inline]
-    pub(crate) fn level<R: Real<Element = E>>(
+    pub(crate) fn level<R: Arithmetic<Element = E>>(
         &self,
         real: &R,
         rows: &Rows<E>,
@@ -82,7 +92,7 @@ impl<E: Clone> Sum<E> {
 
 impl<E: Clone> Term<E> {
     #[inline]
-    fn level<R: Real<Element = E>>(&self, real: &R, rows: &Rows<E>, n: usize, to: &mut E) {
+    fn level<R: Arithmetic<Element = E>>(&self, real: &R, rows: &Rows<E>, n: usize, to: &mut E) {
         match self.part {
             Part::Row(a) => real.set(to, rows.at(a, n)),
             Part::Product(a, b) => real.convolve(to, &rows.row(a)[..=n], &rows.row(b)[..=n]),
@@ -96,7 +106,7 @@ impl<E: Clone> Term<E> {
 
 /// to = sum_j a_j a_(n-j) of n + 1 numbers.
 #[inline]
-pub(crate) fn square<R: Real>(real: &R, to: &mut R::Element, a: &[R::Element]) {
+pub(crate) fn square<R: Arithmetic>(real: &R, to: &mut R::Element, a: &[R::Element]) {
     let half = a.len() / 2;
     real.convolve(to, &a[..half], &a[a.len() - half..]);
     real.times_integer(to, 2);
@@ -106,7 +116,7 @@ pub(crate) fn square<R: Real>(real: &R, to: &mut R::Element, a: &[R::Element]) {
 }
 
 /// The steps of a level from 2 on; `needed`: rows that are read from outside.
-pub(crate) fn steps<R: Real>(
+pub(crate) fn steps<R: Arithmetic>(
     real: &R,
     tape: &Tape<R::Element>,
     needed: &[usize],
@@ -276,10 +286,7 @@ mod tests {
         let bits = |row: &[f64]| row.iter().map(|c| (c + 0.0).to_bits()).collect::<Vec<_>>();
         let mut sums = 0;
         for step in &tape.steps {
-            let row = match step {
-                Step::Operation(index) => tape.states + index,
-                Step::Sum(row, _) => *row,
-            };
+            let row = step.row(tape.states);
             sums += usize::from(matches!(step, Step::Sum(..)));
             assert_eq!(bits(rows.row(row)), bits(other.row(row)), "row {row}");
         }

@@ -3,7 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::common::{parameters, stick_slip};
-use lindstedt_simulate::{DiagramSettings, Doubles, Quantity, Section, Settings, Sweep, diagram};
+use lindstedt_equation::{Crossing, Expression, Function, Impact};
+use lindstedt_simulate::{
+    Column, DiagramSettings, Doubles, Model, Parameters, Quantity, Section, Settings, Sweep,
+    diagram, go_on,
+};
 use rug::Rational;
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -114,6 +118,77 @@ fn a_column_fails_alone() {
     // Negative friction on the switch: both sides lead away from it.
     assert_eq!(outcomes.len(), 2);
     assert!(!outcomes[1]);
+}
+
+/// The columns of a diagram that is computed `side` columns at a time.
+fn columns(
+    (model, parameters, name): (&Model, &Parameters, &str),
+    values: &[Quantity],
+    settings: &DiagramSettings<f64>,
+    side: usize,
+) -> Vec<Column<f64>> {
+    let sweep = Sweep { model, parameters, name, values };
+    let mut all = Vec::new();
+    for first in (0..values.len()).step_by(side) {
+        let range = first..values.len().min(first + side);
+        let next = diagram(&sweep, &Doubles, settings, range.clone(), &go_on, &mut |column| {
+            all.push(column);
+            ControlFlow::Continue(())
+        });
+        assert_eq!(next, range.end);
+    }
+    all
+}
+
+/// One, four, eight and nineteen columns side by side: sliding, impacts, poles in some columns, constants that are
+/// zero in one, periods of their own. The same bits.
+#[test]
+fn columns_side_by_side_are_columns_alone() {
+    let number = |n: i64, d: i64| Expression::Number((n, d).into());
+    let (x, v, f) =
+        (Expression::DISPLACEMENT, Expression::VELOCITY, Expression::parameter("gamma"));
+    let wave = (number(2, 1) * Expression::Time).apply(Function::Cos);
+    let linear = Expression::ACCELERATION + number(1, 10) * v.clone() + x.clone();
+    let wall =
+        Impact { position: number(1, 4), crossing: Crossing::Rising, restitution: number(4, 5) };
+    let hit = Model::second_order(&(linear.clone() - f.clone() * wave.clone())).unwrap();
+    let slip = (v.clone() - number(1, 3)).apply(Function::Sign);
+    let root = (number(2, 1) + x.clone() * x.clone()).apply(Function::Ln);
+    let mixed = linear.clone() + number(1, 5) * slip + f.clone() * x.clone().apply(Function::Exp)
+        - root * wave;
+    let blown = Expression::ACCELERATION + v - f * x.clone() * x.clone() * x;
+    let models = [
+        stick_slip(),
+        hit.with_wall(wall),
+        Model::second_order(&mixed).unwrap(),
+        Model::second_order(&blown).unwrap(),
+    ];
+    let own = parameters(&[]);
+    let (mut failed, mut stuck) = (0, 0);
+    for (model, parameters) in
+        models.iter().zip([own, Parameters::new(), Parameters::new(), Parameters::new()])
+    {
+        for values in
+            [gammas(19), (-2..17).map(|k| Quantity::from(Rational::from((k, 4)))).collect()]
+        {
+            let mut settings = settings(3, 9, false);
+            for strobe in [false, true] {
+                if strobe {
+                    settings.section = Section::Strobe { first: 0.3, period: 1.7 };
+                    settings.periods = vec![1.5; 4];
+                }
+                let setting = (model, &parameters, "gamma");
+                let alone = columns(setting, &values, &settings, 1);
+                for side in [4, 8, 19] {
+                    assert_eq!(columns(setting, &values, &settings, side), alone, "{side}");
+                }
+                let points = alone.iter().flat_map(|column| column.points.iter().flatten());
+                stuck += points.filter(|point| point.stuck()).count();
+                failed += alone.iter().filter(|column| column.points.is_err()).count();
+            }
+        }
+    }
+    assert!(stuck > 10 && failed > 10, "{stuck} {failed}");
 }
 
 /// 400 values of gamma, 600 periods each: prints the seconds it took.

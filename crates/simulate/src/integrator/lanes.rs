@@ -1,0 +1,311 @@
+//! Several integrations in doubles side by side: the Taylor series of all at once, the rest of a step one by one.
+//!
+//! An operation of a level waits for the one before it; eight integrations that differ in their constants and states
+//! wait together. In every lane the operations and their order are those of [`Doubles`], so the numbers are the same
+//! bit by bit, whatever is in the other lanes. Who slides, rests or has a past takes his step alone.
+
+use super::arithmetic::Arithmetic;
+use super::real::{Doubles, Real};
+use super::{Integrator, Next, Tick, Together};
+use crate::error::SimulateError;
+use crate::tape::{Moment, Rows, Tape};
+
+const LANES: usize = Doubles::LANES;
+
+type Lane = [f64; LANES];
+
+/// The arithmetic of [`Doubles`] in every lane.
+#[derive(Clone, Copy, Debug)]
+struct Lanes;
+
+#[inline(always)]
+fn each(f: impl FnMut(usize) -> f64) -> Lane {
+    std::array::from_fn(f)
+}
+
+/// sum <- sum + a b.
+#[inline(always)]
+fn add_product(sum: &mut Lane, a: &Lane, b: &Lane) {
+    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+        *sum += a * b;
+    }
+}
+
+impl Arithmetic for Lanes {
+    type Element = Lane;
+    type Mode = Lane;
+
+    fn slides(&self, _: Lane) -> bool {
+        false
+    }
+    fn leaps(&self, _: Lane) -> bool {
+        false
+    }
+    #[inline]
+    fn times_sign(&self, to: &mut Lane, mode: Lane) {
+        self.scale(to, &mode);
+    }
+    fn is_zero(&self, _: &Lane) -> bool {
+        false
+    }
+    fn zero(&self) -> Lane {
+        [0.0; LANES]
+    }
+    fn double(&self, x: f64) -> Lane {
+        [x; LANES]
+    }
+    fn negative(&self, a: &Lane) -> Lane {
+        a.map(|a| -a)
+    }
+    #[inline]
+    fn set(&self, to: &mut Lane, x: &Lane) {
+        *to = *x;
+    }
+    #[inline]
+    fn set_zero(&self, to: &mut Lane) {
+        *to = [0.0; LANES];
+    }
+    #[inline]
+    fn add(&self, to: &mut Lane, a: &Lane, b: &Lane) {
+        *to = each(|l| a[l] + b[l]);
+    }
+    #[inline]
+    fn subtract(&self, to: &mut Lane, a: &Lane, b: &Lane) {
+        *to = each(|l| a[l] - b[l]);
+    }
+    #[inline]
+    fn multiply(&self, to: &mut Lane, a: &Lane, b: &Lane) {
+        *to = each(|l| a[l] * b[l]);
+    }
+    #[inline]
+    fn divide(&self, to: &mut Lane, a: &Lane, b: &Lane) {
+        *to = each(|l| a[l] / b[l]);
+    }
+    #[inline]
+    fn increase(&self, to: &mut Lane, a: &Lane) {
+        *to = each(|l| to[l] + a[l]);
+    }
+    #[inline]
+    fn accumulate(&self, to: &mut Lane, a: &Lane, b: &Lane) {
+        add_product(to, a, b);
+    }
+    #[inline]
+    fn scale(&self, to: &mut Lane, a: &Lane) {
+        *to = each(|l| to[l] * a[l]);
+    }
+    #[inline]
+    fn times_integer(&self, to: &mut Lane, n: i32) {
+        *to = to.map(|x| x * f64::from(n));
+    }
+    #[inline]
+    fn over_integer(&self, to: &mut Lane, n: u32) {
+        *to = to.map(|x| x / f64::from(n));
+    }
+    fn exp(&self, to: &mut Lane, x: &Lane) {
+        *to = x.map(f64::exp);
+    }
+    fn ln(&self, to: &mut Lane, x: &Lane) {
+        *to = x.map(f64::ln);
+    }
+    fn sin(&self, to: &mut Lane, x: &Lane) {
+        *to = x.map(f64::sin);
+    }
+    fn cos(&self, to: &mut Lane, x: &Lane) {
+        *to = x.map(f64::cos);
+    }
+    fn power(&self, to: &mut Lane, x: &Lane, p: &Lane) {
+        *to = each(|l| x[l].powf(p[l]));
+    }
+    /// The four partial sums of [`Doubles`].
+    #[inline]
+    fn convolve(&self, to: &mut Lane, a: &[Lane], b: &[Lane]) {
+        let mut sums = [[0.0; LANES]; 4];
+        let (left, left_rest) = a.as_chunks::<4>();
+        let (right_rest, right) = b.as_rchunks::<4>();
+        for (x, y) in left.iter().zip(right.iter().rev()) {
+            for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y.iter().rev())) {
+                add_product(sum, x, y);
+            }
+        }
+        let mut rest = [-0.0; LANES];
+        for (x, y) in left_rest.iter().zip(right_rest.iter().rev()) {
+            add_product(&mut rest, x, y);
+        }
+        let [a, b, c, d] = &sums;
+        *to = each(|l| (a[l] + b[l]) + (c[l] + d[l]) + rest[l]);
+    }
+    #[inline]
+    fn convolve_derivative(&self, to: &mut Lane, scratch: &mut Lane, a: &[Lane], b: &[Lane]) {
+        self.set_zero(to);
+        let n = a.len().saturating_sub(1);
+        for (j, (x, y)) in (1i32..).zip(a.iter().skip(1).zip(b.iter().take(n).rev())) {
+            self.multiply(scratch, x, y);
+            self.times_integer(scratch, j);
+            self.increase(to, scratch);
+        }
+    }
+}
+
+/// The series of integrations side by side.
+struct Group {
+    tape: Tape<Lane>,
+    right_sides: Vec<usize>,
+    rows: Rows<Lane>,
+    order: usize,
+    /// The rows that are written at every level, and those of the first two levels.
+    written: Vec<usize>,
+    first: Vec<usize>,
+}
+
+impl<'s> Integrator<'s, Doubles> {
+    /// Several integrations of one model; nothing where they differ in more than constants, states and times.
+    pub(super) fn side_by_side(flows: &[&Self]) -> Option<Box<dyn Together<Doubles>>> {
+        let first = flows.first()?;
+        let same = |flow: &&&Self| {
+            flow.past.is_none()
+                && flow.series.order == first.series.order
+                && flow.system.right_sides == first.system.right_sides
+        };
+        if !(2..=LANES).contains(&flows.len()) || !flows.iter().all(|flow| same(&flow)) {
+            return None;
+        }
+        let tapes: Vec<_> = flows.iter().map(|flow| &flow.system.tape).collect();
+        let join = |c: usize| {
+            each(|l| *tapes.get(l).unwrap_or(&tapes[0]).constants.get(c).unwrap_or(&0.0))
+        };
+        let tape = Tape::side_by_side(&tapes, &Lanes, join)?;
+        let row = |index: &usize| tape.states + index;
+        let states = 0..tape.states;
+        let written = states.chain(tape.steps.iter().map(|step| step.row(tape.states))).collect();
+        Some(Box::new(Group {
+            first: tape.live.iter().map(row).collect(),
+            written,
+            right_sides: first.system.right_sides.clone(),
+            rows: Rows::new(tape.rows(), first.series.order + 1, &Lanes.zero()),
+            order: first.series.order,
+            tape,
+        }))
+    }
+
+    /// Whether nothing but the recurrences makes the series.
+    fn is_plain(&self) -> bool {
+        self.phase.contact.is_none() && self.phase.modes.iter().all(|mode| mode.abs() == 1)
+    }
+}
+
+impl Group {
+    /// [`crate::series::Series::expand`] of those that ask for it.
+    fn expand(&mut self, flows: &mut [Option<&mut Integrator<'_, Doubles>>]) {
+        let of = |read: &dyn Fn(&Integrator<'_, Doubles>) -> f64| {
+            each(|l| flows.get(l).and_then(|flow| flow.as_deref().map(read)).unwrap_or(1.0))
+        };
+        for state in 0..self.tape.states {
+            *self.rows.at_mut(state, 0) = of(&|flow| flow.state[state]);
+        }
+        let time = of(&|flow| flow.clock.high);
+        let switches = flows.iter().flatten().map(|flow| flow.phase.modes.len()).max().unwrap_or(0);
+        let mode = |switch: usize| of(&|flow| f64::from(flow.phase.modes[switch]));
+        let modes: Vec<Lane> = (0..switches).map(mode).collect();
+        let (mut sum, mut scratch) = (Lanes.zero(), Lanes.zero());
+        for n in 0..=self.order {
+            let (sum, scratch) = (&mut sum, &mut scratch);
+            let mut moment = Moment { time: &time, modes: &modes, sum, scratch };
+            self.tape.level(&Lanes, &mut self.rows, n, &mut moment);
+            if n == self.order {
+                break;
+            }
+            for (state, right) in self.right_sides.iter().enumerate() {
+                let next = self.rows.at(*right, n).map(|f| f / f64::from(n as u32 + 1));
+                *self.rows.at_mut(state, n + 1) = next;
+            }
+        }
+        for (lane, flow) in flows.iter_mut().enumerate() {
+            let Some(flow) = flow else { continue };
+            let rows = &mut flow.series.rows;
+            for row in &self.written {
+                let own = self.rows.row(*row).iter().map(|lanes| lanes[lane]);
+                rows.row_mut(*row).iter_mut().zip(own).for_each(|(to, x)| *to = x);
+            }
+            for row in &self.first {
+                let own = self.rows.row(*row).iter().map(|lanes| lanes[lane]);
+                rows.row_mut(*row).iter_mut().zip(own).take(2).for_each(|(to, x)| *to = x);
+            }
+            flow.expanded = true;
+        }
+    }
+}
+
+impl Together<Doubles> for Group {
+    fn round(
+        &mut self,
+        flows: &mut [(&mut Integrator<'_, Doubles>, Option<f64>)],
+        tick: &Tick<'_>,
+    ) -> Vec<Result<Next, SimulateError>> {
+        let mut plain: Vec<_> = flows
+            .iter_mut()
+            .map(|(flow, target)| {
+                let moves = target.is_some_and(|target| !flow.has_reached(&target));
+                (moves && flow.is_plain()).then_some(&mut **flow)
+            })
+            .collect();
+        // One has nobody to wait with.
+        if plain.iter().flatten().count() > 1 {
+            self.expand(&mut plain);
+        }
+        let step = |(flow, target): &mut (&mut Integrator<'_, Doubles>, Option<f64>)| {
+            target.map_or(Ok(Next::Idle), |target| flow.next(&target, tick))
+        };
+        flows.iter_mut().map(step).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+    use super::*;
+    use crate::integrator::{Settings, go_on};
+    use crate::quantity::{Parameters, Quantity};
+    use crate::system::Model;
+    use lindstedt_equation::{Expression, Function};
+
+    /// What a round does: one series for all, and one step each; the states after it are those of a step alone.
+    #[test]
+    fn a_round_is_a_step_of_each() {
+        let (x, k) = (Expression::DISPLACEMENT, Expression::parameter("k"));
+        let wave = (k.clone() * Expression::Time).apply(Function::Cos);
+        let equation =
+            Expression::ACCELERATION + x.clone() + k * x.clone() * x.clone() * x.clone() - wave;
+        let model = Model::second_order(&equation).unwrap();
+        let system = |k: i64| {
+            let parameters = Parameters::new().with("k", Quantity::from(k));
+            model.compile(Doubles, &parameters).unwrap()
+        };
+        let systems: Vec<_> = (2..7).map(system).collect();
+        let settings = Settings::for_digits(16);
+        let start = |system| Integrator::new(system, &0.1, &[0.3, 0.2], settings).unwrap();
+        let mut flows: Vec<_> = systems.iter().map(start).collect();
+        let mut alone = flows.clone();
+        let mut group = Doubles::together(&flows.iter().collect::<Vec<_>>()).unwrap();
+        // The second has no target, the third has reached its own.
+        let targets = [Some(9.0), None, Some(0.1), Some(9.0), Some(0.2)];
+        let mut pairs: Vec<_> = flows.iter_mut().zip(targets).collect();
+        let told: Vec<_> =
+            group.round(&mut pairs, &go_on).into_iter().map(Result::unwrap).collect();
+        assert_eq!(told, [Next::Moved, Next::Idle, Next::Reached, Next::Moved, Next::Moved]);
+        for ((flow, alone), target) in flows.iter().zip(&mut alone).zip(targets) {
+            if let Some(target) = target {
+                alone.next(&target, &go_on).unwrap();
+            }
+            assert_eq!((flow.state(), flow.time()), (alone.state(), alone.time()));
+            assert_eq!(flow.work().steps, alone.work().steps);
+            // Every coefficient: the last ones do not reach the state.
+            assert_eq!(flow.series.rows.data, alone.series.rows.data);
+        }
+        let other = system(2);
+        let one = Model::second_order(&(Expression::ACCELERATION + x)).unwrap();
+        let one = one.compile(Doubles, &Parameters::new()).unwrap();
+        assert!(Doubles::together(&[&start(&other)]).is_none());
+        assert!(Doubles::together(&[&start(&other), &start(&one)]).is_none());
+    }
+}
