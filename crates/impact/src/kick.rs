@@ -19,7 +19,7 @@ use crate::parameters::Parameters;
 use lindstedt_algebra::Stop;
 use nalgebra::{DMatrix, DVector};
 
-/// Half width of the band around 1 in which a growth rate counts as neutral.
+/// Within this of 1 a rate is looked at with finer flights.
 const BAND: f64 = 1e-3;
 /// By how many points of a flight the rate is tried again: not by as many twice, so that an error which
 /// alternates with the parity of the number or is of slow decay shows in one of them.
@@ -40,13 +40,12 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Stable or unstable; neutral within 10^-3 or within the error of 1.
+    /// Stable or unstable; neutral within the error of 1.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        let band = BAND.max(self.error);
         match self.rate - 1.0 {
-            excess if excess < -band => Verdict::Stable,
-            excess if excess > band => Verdict::Unstable,
+            excess if excess < -self.error => Verdict::Stable,
+            excess if excess > self.error => Verdict::Unstable,
             _ => Verdict::Neutral,
         }
     }

@@ -72,11 +72,11 @@ fn a_growth_near_one_is_undecided() {
     let near = loop {
         let middle = 0.5 * (inside + outside);
         let found = report(middle);
-        let rate = found.growth.unwrap().rate;
-        if (rate - 1.0).abs() < 1e-4 {
+        let growth = found.growth.unwrap();
+        if (growth.rate - 1.0).abs() < growth.error {
             break found;
         }
-        if rate > 1.0 { outside = middle } else { inside = middle }
+        if growth.rate > 1.0 { outside = middle } else { inside = middle }
     };
     assert_eq!(near.verdict, Verdict::Neutral);
     assert!(near.zeros_in_unit_disc.is_some());
