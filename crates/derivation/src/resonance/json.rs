@@ -241,7 +241,10 @@ impl Serialize for SlowFlow {
                 let terms = monomials(self, &names, &form.terms);
                 Invariant { form: terms, orders: form.orders }
             });
-            map.serialize_entry("quadratic_invariants", &forms.collect::<Vec<_>>())?;
+            let forms: Vec<_> = forms.collect();
+            if !forms.is_empty() {
+                map.serialize_entry("quadratic_invariants", &forms)?;
+            }
         }
         if let Some(Polar { slow, amplitude, phase }) = self.polar() {
             map.serialize_entry("slow_phase", &slow)?;

@@ -101,16 +101,21 @@ impl Add<&Polynomial> for Polynomial {
     }
 }
 
+/// The exponents of a product of monomials.
+fn sum(a: &[u32], b: &[u32]) -> Vec<u32> {
+    let (long, short) = if a.len() > b.len() { (a, b) } else { (b, a) };
+    let mut sum = long.to_vec();
+    sum.iter_mut().zip(short).for_each(|(e, f)| *e += f);
+    sum
+}
+
 impl Mul for &Polynomial {
     type Output = Polynomial;
     fn mul(self, other: Self) -> Polynomial {
         let mut product = Polynomial::default();
         for (a, p) in &self.terms {
             for (b, q) in &other.terms {
-                let (long, short) = if a.len() > b.len() { (a, b) } else { (b, a) };
-                let mut sum = long.clone();
-                sum.iter_mut().zip(short).for_each(|(e, f)| *e += f);
-                product.put(&sum, &p.times(q));
+                product.put(&sum(a, b), &p.times(q));
             }
         }
         product

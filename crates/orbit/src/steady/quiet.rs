@@ -31,7 +31,7 @@ impl<'a> Quiet<'a> {
         };
         let (free, tied): (Vec<_>, Vec<_>) = (0..equations.len()).partition(is_free);
         let some = !free.is_empty() && !tied.is_empty();
-        some.then(|| Self { equations, free, tied })
+        some.then_some(Self { equations, free, tied })
     }
 
     /// The term in the tied unknowns, the |w_k|^2 of the free ones being parameters before the others.
