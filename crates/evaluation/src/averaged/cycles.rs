@@ -120,7 +120,7 @@ impl SummedCycle {
         let along = series.map(|series| Along::new(cycle, series, small));
         let ratios = along.iter().flatten().flat_map(|along| {
             let sizes = along.sizes(bits);
-            falls(&sizes, sizes[0])
+            falls(&sizes, sizes[0]).concat()
         });
         // Where all vanish, as if the coefficients to come were 1.
         let q = ratios.reduce(f64::max).unwrap_or_else(|| small.to_f64().abs());

@@ -10,7 +10,7 @@
 //! these two n, that of the rates p times as much, p = min (4 q/(1 - q), max (1, q/(1 - q))), and t q^(N + 1) where all orders vanish; but a' = 0 to every
 //! order where the motion can be run backwards. A_n and B_n are judged together: with a delay the complex rate turns from
 //! order to order, and one of them may be small by accident. Of 2000 rates of linear equations with a delay, roots
-//! of the characteristic equation, 1 is further off than estimated, none by more than 2 times (by the roots alone 15 and 1), and
+//! of the characteristic equation, 2 are further off than estimated, none by more than 2 times (by the roots alone 15 and 1), and
 //! the estimate 15 times too large in the median. |t_n| is the largest among amplitudes passed through and some below the largest one: a
 //! polynomial in a has zeros, as A_1 on a limit cycle.
 
@@ -62,7 +62,7 @@ pub(super) fn last_two(sizes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
 }
 
 /// (t_n/t)^(1/n) of the last two sizes that do not vanish, and (t_n/t_m)^(1/(n - m)) of neighbours, t before the first.
-pub(super) fn falls(sizes: &[f64], scale: f64) -> Vec<f64> {
+pub(super) fn falls(sizes: &[f64], scale: f64) -> [Vec<f64>; 2] {
     let last: Vec<_> = last_two(sizes).collect();
     let before = last.iter().skip(1).copied().chain([(0, scale)]);
     let ratio = |(m, before): (usize, f64), (n, size): (usize, f64)| {
@@ -70,7 +70,7 @@ pub(super) fn falls(sizes: &[f64], scale: f64) -> Vec<f64> {
     };
     let roots = last.iter().map(|term| ratio((0, scale), *term));
     let quotients = last.iter().zip(before).map(|(term, before)| ratio(before, *term));
-    roots.chain(quotients).collect()
+    [roots.collect(), quotients.collect()]
 }
 
 /// The larger one; NaN if one of them is.
@@ -123,7 +123,12 @@ impl Rest {
         let of_x = self.of_x(full, amplitudes);
         let scale = of_x.first().copied().unwrap_or_default();
         let lists = [(of_x, scale), (self.sizes(amplitudes), self.frequency)];
-        lists.iter().flat_map(|(sizes, scale)| falls(sizes, *scale)).fold(0.0, largest)
+        let all = lists.iter().flat_map(|(sizes, scale)| {
+            let [roots, quotients] = falls(sizes, *scale);
+            // To a term that is small by accident it is 1 or more.
+            roots.into_iter().chain(quotients.into_iter().filter(|q| *q < 1.0))
+        });
+        all.fold(0.0, largest)
     }
 
     /// The rests of a'/a and psi', q < 1.
