@@ -341,7 +341,8 @@ fn a_quotient_in_the_time_domain() {
         let late = (Expression::DISPLACEMENT + 1).delayed(Expression::Number(delay));
         let own = Expression::DISPLACEMENT + 1;
         let right = 2 * late.clone() * (late.pow(10) + 1).pow(-1) - own;
-        let model = Model::first_order(&["x"], &[right.clone()]).unwrap().with_section(right);
+        let model =
+            Model::first_order(&["x"], std::slice::from_ref(&right)).unwrap().with_section(right);
         let (history, start) = motion(&cycle, eps, 1.02);
         let end = 30.0 / (-beta * eps * eps);
         let list = maxima(model, &Parameters::new(), (&history, &start[..1]), end);

@@ -56,7 +56,7 @@ fn of_equal_extrema_the_first_counts() {
         assert!(above < below, "{list:?}");
         let followed = match (&list[0].manifolds, &list[0].not_followed) {
             (Some(found), _) => parts(&found.slope).0,
-            (None, reason) => reason.as_ref().unwrap().split(' ').last().unwrap().parse().unwrap(),
+            (None, reason) => reason.as_ref().unwrap().rsplit(' ').next().unwrap().parse().unwrap(),
         };
         [above, below, followed]
     };

@@ -37,6 +37,18 @@ pub(super) struct Subject<'a> {
     amplitude: Option<f64>,
 }
 
+/// The flow in the frame where it rests: of modes that a resonance couples, and whole where something varies.
+fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<Rotating, Error> {
+    let found = rotating(slow, small, order).map_err(no_frame)?;
+    if !found.whole && varies {
+        return Err(not_whole());
+    }
+    if found.fixed == 0 {
+        return Err(uncoupled(order));
+    }
+    Ok(found)
+}
+
 impl<'a> Subject<'a> {
     pub(super) fn new(
         oscillator: &'a Oscillator,
@@ -92,13 +104,7 @@ impl<'a> Subject<'a> {
             return Err(no_part(name));
         }
         has_numbers(oscillator, &slow)?;
-        let rotating = rotating(&slow, &small, order).map_err(no_frame)?;
-        if !rotating.whole && question.sweep.is_some() {
-            return Err(not_whole());
-        }
-        if rotating.fixed == 0 {
-            return Err(uncoupled(order));
-        }
+        let rotating = coupled(&slow, &small, order, question.sweep.is_some())?;
         let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
         let small = value.as_ref().and_then(Exact::as_rational).cloned();
         let amplitude = question.amplitude.as_ref().map(Exact::to_f64);
