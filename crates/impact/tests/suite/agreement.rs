@@ -3,7 +3,7 @@
 
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::flow::{characteristic_root, rates};
-use lindstedt_impact::kick::piecewise_growth;
+use lindstedt_impact::kick::piecewise_stable;
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::{Branch, Parameters};
@@ -25,15 +25,15 @@ const ORBITS: [(&str, f64, u32, f64, f64, f64); 8] = [
 
 const RULES: [&str; 8] = ["null", "P1", "E1", "S1", "S inf", "G none", "G mean", "R<0"];
 
-/// Verdicts (stable?) of the rules; None: no prediction.
-fn verdicts(p: &Parameters<f64>) -> (bool, [Option<bool>; 8]) {
+/// Verdicts (stable?) of truth, None within its error, and of the rules, None without a prediction.
+fn verdicts(p: &Parameters<f64>) -> (Option<bool>, [Option<bool>; 8]) {
     let found = orbit(p).unwrap();
     let stable = |verdict| verdict == Verdict::Stable;
     let g = |kick| stable(exact_verdict(&Characteristic::new(p, &found, kick)).0);
     let truth = if p.velocity_gain == 0.0 {
-        g(Kick::None)
+        Some(g(Kick::None))
     } else {
-        piecewise_growth(p, &found, 400).unwrap().rate < 1.0
+        piecewise_stable(p, &found, 400).unwrap()
     };
     let flow = predicted_flow(p, &rates(p, 1), 1).unwrap();
     let predicted = |variant| {
@@ -79,12 +79,12 @@ fn agreement_with_the_truth_on_eight_orbits() {
                 })
             })
             .collect();
-        let stable = points.iter().filter(|(truth, _)| *truth).count();
+        let stable = points.iter().filter(|(truth, _)| *truth == Some(true)).count();
         stable_points += stable;
         let mut line = format!("{name} stable {:.2}", stable as f64 / 441.0);
         for (rule, label) in RULES.iter().enumerate() {
-            let all = points.iter().filter(|(_, rules)| rules[rule].is_some()).count();
-            let equal = points.iter().filter(|(truth, rules)| rules[rule] == Some(*truth)).count();
+            let both = points.iter().filter_map(|(truth, rules)| truth.zip(rules[rule]));
+            let (all, equal) = (both.clone().count(), both.filter(|(a, b)| a == b).count());
             sums[rule].0 += equal;
             sums[rule].1 += all;
             line += &format!(" | {label} {:.3}", equal as f64 / all as f64);
