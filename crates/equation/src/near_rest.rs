@@ -36,10 +36,11 @@ pub enum NoSeries {
 /// ```
 /// use lindstedt_equation::{Expression, monomials::expand, near_rest::near_rest};
 /// let x = || Expression::DISPLACEMENT;
-/// let hill = x() / (1 + (1 + x()).pow(10));
+/// let hill = x() * ((x() + 1).pow(10) + 1).pow(-1);
 /// let near = near_rest(&hill, 2)?;
 /// let quadratic: Vec<_> = near.terms.iter().map(|(m, q)| near.tree(m, q)).collect();
-/// assert_eq!(quadratic, [x() / 2, -5 * x().pow(2) / 2].map(|e| e.canonical()));
+/// let half = |e: Expression| (e * Expression::Number((1, 2).into())).canonical();
+/// assert_eq!(quadratic, [half(x()), half(-5 * x().pow(2))]);
 /// # Ok::<(), lindstedt_equation::near_rest::NoSeries>(())
 /// ```
 ///
@@ -123,8 +124,10 @@ impl Near {
     /// m f as one series, which is known at least up to a degree.
     fn regular(&mut self, e: &Expression, value: Value, degree: u32) -> Option<Terms> {
         let Some(m) = product_of(&value.shift) else {
-            return match value.is_zero() {
-                true => Some(Terms::new()),
+            return match value.terms.is_empty() {
+                true if value.is_zero() => Some(Terms::new()),
+                // A zero so far.
+                true => self.lacks(8, e),
                 false => self.refuse(NoSeries::Singular(e.clone())),
             };
         };
@@ -135,8 +138,11 @@ impl Near {
         self.expander.product(&Terms::from([(m, 1.into())]), &value.terms)
     }
 
-    /// m f with f(0) not 0 where one unknown alone occurs and f is not zero as far as it is known.
+    /// m f with f(0) not 0 where one unknown alone occurs and f is not zero as far as it is known. Terms beyond that are
+    /// left out: were they the lowest, they would be taken for the beginning of f.
     fn reduced(&self, mut value: Value) -> Value {
+        let known = if value.is_constant() { value.known } else { value.known.min(self.working) };
+        value.terms.retain(|m, _| m.degree() <= known);
         let lowest = value.terms.keys().map(Monomial::degree).min().unwrap_or(0);
         let mut names = value.names.iter();
         if let (Some(name), None, true) = (names.next(), names.next(), lowest > 0) {
@@ -147,7 +153,7 @@ impl Near {
                 (m, q)
             };
             value.terms = value.terms.into_iter().map(lower).collect();
-            value.known = value.known.min(self.working) - lowest;
+            value.known = known - lowest;
         }
         value
     }
@@ -242,7 +248,11 @@ fn known_value(e: Expression) -> Expression {
     };
     let opposite = || (-(**z).clone()).canonical();
     match (function, &**z) {
-        (Function::Exp, Expression::Function(Function::Ln, q)) => (**q).clone(),
+        (Function::Exp, Expression::Function(Function::Ln, q))
+            if q.as_number().is_none_or(|q| q > 0) =>
+        {
+            (**q).clone()
+        }
         (Function::Exp, Expression::Number(q)) if q.is_zero() => 1.into(),
         (Function::Ln, Expression::Number(q)) if *q == 1 => 0.into(),
         (Function::Sin, z) if half(z).is_some() => {
@@ -401,5 +411,47 @@ impl Operations for Near {
         }
         let terms = self.compose(&u, &|k| coefficient(function, &c, k))?;
         Some(self.reduced(Value { names, known, ..Value::of(terms) }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Quotients whose first terms cancel: the terms up to a degree are those of a higher one.
+    #[test]
+    fn coefficients_do_not_depend_on_the_degree() {
+        let x = || Expression::DISPLACEMENT;
+        let (sine, cosine) = (|| x().apply(Function::Sin), || x().apply(Function::Cos));
+        let half = || (x() * Expression::Number(Rational::from((1, 2)))).apply(Function::Sin);
+        let versed = || (-cosine() + 1).pow(-1);
+        let quotients = [
+            x().pow(2) * versed() - x() * sine().pow(-1) - 1,
+            5 * x().pow(2) * versed() - 5 * x().pow(2) * (2 * half().pow(2)).pow(-1),
+            (x().pow(2) * versed() - 2) * x().pow(-1),
+            (sine() - x()) * (x() * (-cosine() + 1)).pow(-1),
+        ];
+        // x^2/(1 - cos x) = 2 + x^2/6 + x^4/120 + ..., x/sin x = 1 + x^2/6 + 7 x^4/360 + ...,
+        // sin x - x = -x^3/6 + x^5/120 - ..., x (1 - cos x) = x^3/2 - x^5/24 + ...
+        let expected = [
+            vec![(4, (-1, 90))],
+            vec![],
+            vec![(1, (1, 6)), (3, (1, 120))],
+            vec![(0, (-1, 3)), (2, (-1, 90))],
+        ];
+        for (quotient, expected) in quotients.iter().zip(expected) {
+            for degree in 4..12 {
+                let found = near_rest(quotient, degree).unwrap();
+                let low = found.terms.iter().filter(|(m, _)| m.degree() <= 4);
+                let low: Vec<_> = low.map(|(m, q)| (m.degree(), q.clone())).collect();
+                let known = expected.iter().map(|(d, q)| (*d, Rational::from(*q)));
+                let known: Vec<_> = known.collect();
+                let shown = low.iter().filter(|(d, _)| known.iter().any(|(k, _)| k == d));
+                assert!(shown.eq(known.iter()), "{quotient:?} {degree}: {low:?}");
+                let first = near_rest(quotient, 4).unwrap().terms;
+                let first: Vec<_> = first.iter().map(|(m, q)| (m.degree(), q.clone())).collect();
+                assert_eq!(low, first, "{degree}");
+            }
+        }
     }
 }

@@ -5,7 +5,8 @@
 //! for n = 1, ..., identically. Every resonant term of order one of a Hamiltonian flow exchanges |z_j|^2 in the proportion that
 //! the lattice of its resonances fixes (Manley and Rowe 1956), so that M unknowns with r independent resonances have M - r of
 //! them; in the z_j, which are no canonical coordinates beyond order one, higher orders need not keep them. What is
-//! asked here is the kernel of the rates of the |z_j|^2, which knows nothing of potentials and resonances.
+//! asked here is the kernel of the rates of the |z_j|^2, which knows nothing of potentials and resonances, of all orders at
+//! once first, then of fewer: a combination may live longer than the forms it is put together from.
 
 use super::modes::{Matrix, kernel};
 use super::{SlowFlow, Terms};
@@ -24,7 +25,7 @@ pub struct QuadraticInvariant {
 }
 
 impl SlowFlow {
-    /// The quadratic forms that f_1 keeps, of several unknowns whose energy is conserved; none where coefficients are
+    /// Independent quadratic forms that the f_1, ..., f_n keep, those of most orders first, of several unknowns whose energy is conserved; none where coefficients are
     /// enclosed.
     #[must_use]
     pub fn quadratic_invariants(&self) -> Vec<QuadraticInvariant> {
@@ -33,14 +34,22 @@ impl SlowFlow {
             return Vec::new();
         }
         let rates: Vec<Matrix> = (1..=self.order).map(|n| self.rates_of_squares(n)).collect();
-        let keeps = |q: &[Rational], rates: &Matrix| {
-            rates.iter().all(|row| {
-                let sum: Rational = row.iter().zip(q).map(|(x, q)| Rational::from(x * q)).sum();
-                sum.is_zero()
-            })
-        };
-        let invariant = |q: Vec<Rational>| {
-            let orders = rates.iter().take_while(|rates| keeps(&q, rates)).count();
+        let moves = |n: &usize| self.flow.iter().any(|terms| !terms[*n].is_empty());
+        // Nothing is said by orders at which all f_n vanish.
+        let Some(first) = (1..=self.order).find(moves) else { return Vec::new() };
+        let mut found: Vec<(Vec<Rational>, usize)> = Vec::new();
+        for orders in (first..=self.order).rev() {
+            for q in kernel(rates[..orders].concat(), unknowns) {
+                let component = |j: usize| {
+                    found.iter().map(|(q, _)| q).chain([&q]).map(|q| q[j].clone()).collect()
+                };
+                let dependent = kernel((0..unknowns).map(component).collect(), found.len() + 1);
+                if dependent.is_empty() {
+                    found.push((q, orders));
+                }
+            }
+        }
+        let invariant = |(q, orders): (Vec<Rational>, usize)| {
             let square = |(j, q): (usize, &Rational)| {
                 let mut exponents = vec![0; self.first_symbol() + self.system.symbols.len()];
                 exponents[2 * j..2 * j + 2].fill(1);
@@ -49,7 +58,7 @@ impl SlowFlow {
             let terms = q.iter().enumerate().filter(|(_, q)| !q.is_zero()).map(square).collect();
             QuadraticInvariant { terms, orders }
         };
-        kernel(rates[0].clone(), unknowns).into_iter().map(invariant).collect()
+        found.into_iter().map(invariant).collect()
     }
 
     /// The coefficients of D_n |z_j|^2, a column per j.

@@ -77,7 +77,7 @@ impl<'a> Force<'a> {
 struct Flow<'a> {
     amplitudes: &'a [String],
     frequencies: &'a [String],
-    forcing: &'a str,
+    forcing: Option<&'a str>,
     orders: Object<String, Vec<Vec<Monomial<'a>>>>,
 }
 
@@ -229,7 +229,11 @@ impl Serialize for SlowFlow {
         let flow = Flow {
             amplitudes: &names[..2 * self.unknowns()],
             frequencies: &frequencies,
-            forcing: forces.first().map_or("0", |force| &force.rate),
+            forcing: match &forces[..] {
+                [] => Some("0"),
+                [only] => Some(&only.rate),
+                _ => None,
+            },
             orders: Object(orders.collect()),
         };
         map.serialize_entry("slow_flow", &flow)?;

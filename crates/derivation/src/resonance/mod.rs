@@ -167,18 +167,22 @@ impl SlowFlow {
     /// [`Error::SymbolTaken`].
     pub fn check_names(&self) -> Result<(), Error> {
         let System { symbols, independent, shapes, .. } = &self.system;
-        refuse_taken(symbols.iter().chain(independent), |base, numbered| match base {
+        // In JSON the amplitudes are z1, zbar1, ..., the phases E1, ...
+        let plain = |name: &str| match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
             "z" | "zbar" => Some("a complex amplitude"),
+            "E" => Some("exp(i*eta) of a force"),
+            _ => None,
+        };
+        refuse_taken(symbols.iter().chain(independent), |base, numbered| match base {
             "a" => Some("an amplitude"),
             "psi" => Some("a phase"),
-            "E" => Some("exp(i*eta) of a force"),
             "eta" => Some("the phase of a force"),
             "gamma" => Some("the phase against a force"),
             "nu" => Some("a frequency of the linear oscillators"),
             "f" | "u" if numbered => Some("a coefficient"),
             "H" if numbered => Some("a coefficient of the energy"),
             "q" if numbered && shapes.is_some() => Some("a mode"),
-            _ => None,
+            _ => plain(base),
         })
     }
 

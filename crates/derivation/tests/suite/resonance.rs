@@ -518,6 +518,10 @@ fn quadratic_invariants() {
     let known = by_hand(&["1 z1 zbar1", "9 z2 zbar2"]);
     assert_eq!(forms("x'' + x + 3*eps*x^2*y; y'' + 9*y + eps*x^3", 1), [(known, 1)]);
     assert!(forms("x'' + x + eps*(x' + 2*x*y); y'' + 4*y + eps*x^2", 1).is_empty());
+    // f_1 vanishes and says nothing; one combination of what it keeps is kept by f_2 too.
+    let both = by_hand(&["1 z1 zbar1", "1 z2 zbar2"]);
+    assert_eq!(forms("x'' + x + 2*eps*x*y; y'' + y + eps*x^2", 1), []);
+    assert_eq!(forms("x'' + x + 2*eps*x*y; y'' + y + eps*x^2", 2), [(both, 2)]);
     // Without a resonance every square is kept, to all orders.
     let apart = forms("x'' + x + 2*eps*x*y^2; y'' + 49/25*y + 2*eps*x^2*y", 2);
     assert_eq!(apart.iter().map(|(_, orders)| *orders).collect::<Vec<_>>(), [2, 2]);

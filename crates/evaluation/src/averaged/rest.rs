@@ -10,8 +10,8 @@
 //! these two n, that of the rates p times as much, p = min (4 q/(1 - q), max (1, q/(1 - q))), and t q^(N + 1) where all orders vanish; but a' = 0 to every
 //! order where the motion can be run backwards. A_n and B_n are judged together: with a delay the complex rate turns from
 //! order to order, and one of them may be small by accident. Of 2000 rates of linear equations with a delay, roots
-//! of the characteristic equation, 2 are further off than estimated, none by more than 2 times (by the roots alone 15 and 1), and
-//! the estimate 15 times too large in the median. |t_n| is the largest among amplitudes passed through and some below the largest one: a
+//! of the characteristic equation, 2 are further off than estimated (by the roots alone 15), of another 1800 4, none by more than
+//! 2.3 times, and the estimate is 15 times too large in the median. Quotients of one and more are those to a term small by accident. |t_n| is the largest among amplitudes passed through and some below the largest one: a
 //! polynomial in a has zeros, as A_1 on a limit cycle.
 
 use super::truncated::Truncated;

@@ -20,6 +20,8 @@ use lindstedt_number::real::Real;
 const ROOTS_OF_G: &str = "zeros of G, which approximates the return map; their digits are those of \
                           the zeros, not of multipliers of the map";
 const PENETRATES: &str = "no orbit: the flight passes through the wall";
+/// B is not 0, as zeros of G would have decided.
+const NO_GROWTH: &str = "undecided: the return map could not be followed";
 const GROWTH_NEAR_ONE: &str = "undecided: the growth per impact is not told from 1";
 
 fn word(verdict: Verdict) -> &'static str {
@@ -124,6 +126,7 @@ impl<S: Real> Writer<'_, S> {
         let (stable, words) = match exists {
             Some(true) => match (found.verdict, growth) {
                 (Verdict::Neutral, Some(_)) => (None, GROWTH_NEAR_ONE),
+                (Verdict::Neutral, None) if found.zeros_in_unit_disc.is_some() => (None, NO_GROWTH),
                 (verdict, _) => (stable(verdict), word(verdict)),
             },
             Some(false) => (None, PENETRATES),
