@@ -164,7 +164,7 @@ fn what_follows_the_sweep_lies_on_the_branches() {
 #[test]
 fn a_jump_is_followed_to_its_end() {
     let equation = "x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2";
-    let sweep = Some(Axis::parse("sigma=1,5/4,3/2,7/4").unwrap());
+    let sweep = Some(Axis::parse("sigma=1,5/4,3/2,13/8").unwrap());
     let found = ask(equation, &[("eps", "1/10")], &Respond { sweep, follow: true, ..to_order(4) });
     let [up, _] = found.followed.as_ref().unwrap();
     let read = up[3].amplitudes.as_ref().unwrap()[0].value;

@@ -40,6 +40,9 @@ pub(crate) struct Harmonics {
     pub modes: Option<Vec<Vec<f64>>>,
 }
 
+/// The harmonics of the points of one period.
+type Reader<'a> = dyn Fn(&[Point<f64>]) -> Vec<[f64; 2]> + 'a;
+
 /// How the period of a response is sampled.
 struct Sampling {
     /// p_j.
@@ -136,7 +139,7 @@ fn settled(
     settings: &mut DiagramSettings<f64>,
     index: usize,
     count: usize,
-    read: &dyn Fn(&[Point<f64>]) -> Vec<[f64; 2]>,
+    read: &Reader<'_>,
     work: &Work,
 ) -> Option<Vec<[f64; 2]>> {
     let flow = |on| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };

@@ -159,14 +159,7 @@ impl Oscillator {
             remarks.push(Remark(text.to_owned()));
         }
         remarks.extend(subject.enclosed());
-        let broken = value.branches.iter().filter(|branch| !branch.complete).count();
-        if broken > 0 {
-            remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
-        }
-        if value.no_closed_missing == Some(false) {
-            let text = "closed branches that lie between the values searched may be missing: more values find more";
-            remarks.push(Remark(text.to_owned()));
-        }
+        remarks.extend(missing(&value));
         let standing = match question.sweep {
             _ if work.stop.asked() => Standing::Stopped { done: value.branches.len() },
             None if undecided > 0 || (combination.is_some() && !counted) => Standing::Undecided,
@@ -333,6 +326,20 @@ impl Subject<'_> {
             Fate::Away => Destination { fate: "away", state: None, amplitudes: Vec::new() },
         })
     }
+}
+
+/// What may be missing of branches.
+fn missing(value: &Response) -> Vec<Remark> {
+    let mut remarks = Vec::new();
+    let broken = value.branches.iter().filter(|branch| !branch.complete).count();
+    if broken > 0 {
+        remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
+    }
+    if value.no_closed_missing == Some(false) {
+        let text = "closed branches that lie between the values searched may be missing: more values find more";
+        remarks.push(Remark(text.to_owned()));
+    }
+    remarks
 }
 
 /// The least and the largest of some values.
