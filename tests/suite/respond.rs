@@ -152,11 +152,84 @@ fn what_follows_the_sweep_lies_on_the_branches() {
         list[k].amplitudes.as_ref().unwrap()[0].value
     };
     assert_eq!(found.states[1].count, 3);
-    // 100 periods leave e^(-2 pi) of the way from one value to the next, two thousandths.
+    // 100 periods leave e^(-2 pi) of the way from one value to the next, two thousandths: after a jump they are not enough.
     let pairs =
         [(read(up, 1), known(1, 0)), (read(down, 1), known(1, 2)), (read(down, 2), known(0, 0))];
     for (read, known) in pairs {
-        assert!((read - known).abs() < 5e-3, "{read} {known}");
+        assert!((read - known).abs() < 5e-4, "{read} {known}");
+    }
+}
+
+/// Upwards the motion falls onto the lower branch between omega = 9/8 and 23/20, and is read when it has come to rest there.
+#[test]
+fn a_jump_is_followed_to_its_end() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*cos(omega*t)/2";
+    let sweep = Some(Axis::parse("omega=1..1.2:9").unwrap());
+    let found = ask(equation, &[("eps", "1/10")], &Respond { sweep, follow: true, ..to_order(4) });
+    let [up, _] = found.followed.as_ref().unwrap();
+    let read = up[6].amplitudes.as_ref().unwrap()[0].value;
+    let lowest = found.states[6].list.last().unwrap();
+    let known: f64 = lowest.amplitudes[0].decimal.parse().unwrap();
+    assert!((read - known).abs() < 5e-4, "{read} {known}");
+}
+
+/// Locked motion in closed branches between the values of the sweep: that of one unknown is found, of several it is remarked that
+/// one may be missing.
+#[test]
+fn closed_branches_between_the_values() {
+    let ask = |equation: &str, sweep: &str| {
+        let case = Oscillator::parse(equation).unwrap().set("eps", "1/10").unwrap();
+        let question = Respond { sweep: Some(Axis::parse(sweep).unwrap()), ..to_order(1) };
+        let question = Respond { amplitude: Some("14".parse().unwrap()), ..question };
+        case.respond(&question, &Work::default()).unwrap()
+    };
+    let is_said = |answer: &lindstedt::Answer<Response>| {
+        answer.remarks.iter().any(|remark| remark.0.contains("closed branches"))
+    };
+    let one = ask("x'' + x = eps*((1 - x^2)*x' + cos((1 + eps*sigma)*t)/2)", "sigma=-1..1:8");
+    let closed = one.value.branches.iter().filter(|branch| branch.closed).count();
+    assert_eq!((one.value.branches.len(), closed), (2, 1));
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    for (fold, known) in one.value.folds.iter().zip([-0.126_039_75, 0.126_039_75]) {
+        assert!((number(&fold.value.decimal) - known).abs() < 1e-8, "{}", fold.value.decimal);
+        assert_eq!(fold.value.status, Status::Proved);
+    }
+    assert!(one.value.folds.len() == 2 && !is_said(&one));
+    let two = ask(
+        "x'' + x + eps*(x'/5 + x*y) = 0; \
+         y'' + 4*y + eps*(y + y'/5 + x^2) = 8*eps*cos((2 + eps*s)*t)",
+        "s=-2..2:17",
+    );
+    assert!(two.value.folds.is_empty() && is_said(&two));
+    assert_eq!(two.value.crossings.len(), 2);
+    for crossing in &two.value.crossings {
+        assert!(crossing.value.decimal.len() < 18, "{}", crossing.value.decimal);
+        assert_eq!(crossing.value.status, Status::Estimated);
+    }
+}
+
+/// Liouville: the exponents of a state sum to the mean divergence, -eps/5 of one damped unknown and -3 eps/10 of two; N orders
+/// of the slow flow leave an error of order N + 1.
+#[test]
+fn exponents_sum_to_the_divergence() {
+    let one = "x'' + x + eps*(3/5*x + x'/5 + x^2/2 + x^3) = eps*cos(t)/2";
+    let two = "x'' + x + eps*(x'/5 + x^3 + x^2*y) = eps*cos(t)/2; \
+               y'' + 9*y + eps*(y'/10 + y + x*y^2) = 0";
+    for (equation, divergence, orders) in [(one, 0.2, 1..=6), (two, 0.3, 1..=3)] {
+        for order in orders {
+            let error = |small: &str, value: f64| {
+                let amplitude = Some("3/2".parse().unwrap());
+                let question = Respond { amplitude, ..to_order(order) };
+                let found = ask(equation, &[("eps", small)], &question);
+                let state = &found.states[0].list[0];
+                let sum: f64 = state.exponents.iter().map(|[re, _]| re.value).sum();
+                (sum + divergence * value).abs()
+            };
+            let [a, b] = [error("1/10", 0.1), error("1/20", 0.05)];
+            let slope = (a / b).log2();
+            println!("order {order}: {a:e} {b:e}, slope {slope:.2}");
+            assert!(b < 1e-15 || slope > order as f64 + 0.6, "order {order}: {a:e} {b:e}");
+        }
     }
 }
 

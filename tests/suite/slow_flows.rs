@@ -201,6 +201,15 @@ fn henon_heiles() {
     let expected = [im("z1^2 zbar1", -5, 3), im("z1 z2 zbar2", 2, 3), im("zbar1 z2^2", -7, 3)];
     assert_eq!(terms(&a, &found.flow[0][2]), by_hand(&expected));
     assert!([1, 3].into_iter().all(|n| a.is_zero(&found.flow[0][n])));
+    // K6 = -235/3456 at q_2 = 1 alone. Along q_1 = 0, K = I - (5/48)(2 I)^2 - (235/3456)(2 I)^3; of y with the harmonics z and
+    // -z^2/3, ... the action is omega sum_n n^2 |c_n|^2, both ends of the spectrum counted: with r = |z|^2 and omega =
+    // 1 - 5 r/3 it is I = 2 r (1 - 11 r/9). So omega = dK/dI = 1 - 5 I/6 - 235 I^2/144 has r^2 times:
+    let sixth = q(-235, 36) + q(5, 3) * q(11, 9);
+    let along = terms(&a, &found.flow[1][4]);
+    assert_eq!(sixth, q(-485, 108));
+    for (monomial, size) in by_hand(&[im("z2^3 zbar2^2", -485, 108)]) {
+        assert_eq!(along.get(&monomial), Some(&size));
+    }
 }
 
 /// A complex number.

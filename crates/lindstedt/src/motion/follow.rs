@@ -20,11 +20,15 @@ use std::ops::ControlFlow;
 const SAMPLES: u32 = 32;
 /// Periods of the force at every value before the harmonic is read.
 const PERIODS: u32 = 100;
+/// So many times as long at most, while the harmonic still moves: after a jump.
+const MOST_STAYS: usize = 10;
+/// What is left of that, in parts of the harmonic.
+const SETTLED: f64 = 1e-3;
 
 /// The harmonics at one value.
 pub(crate) struct Reading {
     pub value: Exact,
-    /// a_j e^(i phi_j); nothing where the motion ended.
+    /// a_j e^(i phi_j); nothing where the motion ended or did not settle.
     pub harmonics: Option<Vec<[f64; 2]>>,
 }
 
@@ -35,6 +39,9 @@ pub(crate) struct Harmonics {
     /// P^-1 of q = P^-1 x, of which the harmonics are; nothing where q is x.
     pub modes: Option<Vec<Vec<f64>>>,
 }
+
+/// The harmonics of the points of one period.
+type Reader<'a> = dyn Fn(&[Point<f64>]) -> Vec<[f64; 2]> + 'a;
 
 /// How the period of a response is sampled.
 struct Sampling {
@@ -90,13 +97,13 @@ impl Oscillator {
             let quantities: Vec<Quantity> = values.iter().cloned().map(Quantity::from).collect();
             let own = |value: &Quantity| setup.period_at(&axis.name, value);
             let forces: Vec<f64> = quantities.iter().filter_map(own).collect::<Result<_, _>>()?;
-            let settings = DiagramSettings {
+            let mut settings = DiagramSettings {
                 time: 0.0,
                 start: start.clone(),
                 section: Section::Period(part * forcing),
                 periods: forces.into_iter().map(|period| part * period).collect(),
-                transient: periods * count,
-                kept: count,
+                transient: 0,
+                kept: (periods + 1) * count,
                 follow: true,
                 integration: Settings::for_digits(16),
             };
@@ -106,31 +113,65 @@ impl Oscillator {
                 name: &axis.name,
                 values: &quantities,
             };
-            let flow = |on| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
             let all = values.len();
-            diagram(
-                &sweep,
-                &Doubles,
-                &settings,
-                0..all,
-                &|| flow(!work.stop.asked()),
-                &mut |column| {
-                    let points = column.points.ok().filter(|points| points.len() == count as usize);
-                    if let Some(last) = points.as_ref().and_then(|points| points.last()) {
-                        start.clone_from(&last.state);
-                    }
-                    let modes = wanted.modes.as_deref();
-                    let harmonics = points.map(|points| read(&points, &harmonics, modes));
-                    list.push(Reading { value: values[column.index].clone(), harmonics });
-                    flow(work.goes_on(Progress::Parts(k * all + list.len(), 2 * all)))
-                },
-            );
+            let read = |points: &[Point<f64>]| read(points, &harmonics, wanted.modes.as_deref());
+            for (index, value) in values.into_iter().enumerate() {
+                let harmonics = settled(&sweep, &mut settings, index, count as usize, &read, work);
+                list.push(Reading { value, harmonics });
+                if work.stop.asked()
+                    || !work.goes_on(Progress::Parts(k * all + list.len(), 2 * all))
+                {
+                    break;
+                }
+            }
+            start = settings.start;
             if work.stop.asked() {
                 return Err(Refused::stopped("stopped on the way", "fewer values").into());
             }
         }
         Ok(found)
     }
+}
+
+/// The harmonics at one value once they do not move any more, as [`is_settled`] has it; the start becomes the end.
+fn settled(
+    sweep: &Sweep<'_>,
+    settings: &mut DiagramSettings<f64>,
+    index: usize,
+    count: usize,
+    read: &Reader<'_>,
+    work: &Work,
+) -> Option<Vec<[f64; 2]>> {
+    let flow = |on| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+    for _ in 0..MOST_STAYS {
+        let mut found = None;
+        let tick = || flow(!work.stop.asked());
+        diagram(sweep, &Doubles, settings, index..index + 1, &tick, &mut |column| {
+            found = column.points.ok();
+            flow(true)
+        });
+        let points = found.filter(|points| points.len() == settings.kept as usize)?;
+        settings.start.clone_from(&points.last()?.state);
+        let last = points.len() / count - 1;
+        let three = [0, last / 2, last].map(|k| read(&points[k * count..(k + 1) * count]));
+        if is_settled(&three) {
+            let [.., last] = three;
+            return Some(last);
+        }
+    }
+    None
+}
+
+/// Whether what is read at three equidistant times is at rest: a difference that shrinks by r from one to the next leaves
+/// r/(1 - r) of the second.
+fn is_settled([a, b, c]: &[Vec<[f64; 2]>; 3]) -> bool {
+    let apart = |a: &[[f64; 2]], b: &[[f64; 2]]| {
+        let pairs = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+        pairs.fold(0.0, f64::max)
+    };
+    let size = c.iter().fold(0.0f64, |size, w| size.max(w[0].hypot(w[1])));
+    let (first, second) = (apart(a, b), apart(b, c));
+    second <= 1e-8 * size || (second < first && second * second < SETTLED * size * (first - second))
 }
 
 /// The harmonics of the points of one period, the last of them at its end.

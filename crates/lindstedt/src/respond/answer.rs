@@ -18,6 +18,9 @@ pub struct Response {
     pub amplitude_limit: Estimate,
     /// Whether the truncated slow flow has no steady states beyond.
     pub complete: bool,
+    /// Over one parameter: whether it is proved of the truncated slow flow that no closed branch in the box is missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_closed_missing: Option<bool>,
     /// The branches.
     pub branches: Vec<Branch>,
     /// Folds: two states meet.
@@ -149,7 +152,7 @@ pub struct State {
 pub struct Reading {
     /// The value.
     pub value: Estimate,
-    /// a_j; nothing where the motion ended.
+    /// a_j; nothing where the motion ended or did not settle.
     pub amplitudes: Option<Vec<Estimate>>,
     /// phi_j.
     pub phases: Option<Vec<Estimate>>,

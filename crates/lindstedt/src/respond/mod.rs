@@ -91,7 +91,8 @@ impl Oscillator {
     /// O(eps^N) for N orders. The number of states is *proved* for the truncated slow flow within the box of amplitudes that
     /// is said; where that failed, the states found stand in the answer and it is undecided. Amplitudes and phases of single
     /// states are enclosed ([`Status::Proved`](crate::Status::Proved)), those along branches and all exponents are
-    /// estimated in doubles. A closed branch is found where it reaches over one of the values searched. Cost: the slow flow; a
+    /// estimated in doubles. A closed branch is found where it reaches over one of the values searched; for one unknown its folds are looked
+    /// for themselves, and what could be missing is remarked. Cost: the slow flow; a
     /// search with proof per value, milliseconds for one unknown, seconds for two; microseconds per point.
     ///
     /// # Errors
@@ -158,10 +159,7 @@ impl Oscillator {
             remarks.push(Remark(text.to_owned()));
         }
         remarks.extend(subject.enclosed());
-        let broken = value.branches.iter().filter(|branch| !branch.complete).count();
-        if broken > 0 {
-            remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
-        }
+        remarks.extend(missing(&value));
         let standing = match question.sweep {
             _ if work.stop.asked() => Standing::Stopped { done: value.branches.len() },
             None if undecided > 0 || (combination.is_some() && !counted) => Standing::Undecided,
@@ -207,6 +205,7 @@ impl Subject<'_> {
         let found = survey.run().ok_or_else(not_determined)?;
         let mut response = self.empty(reach, complete);
         response.parameter = Some(axis.name.clone());
+        response.no_closed_missing = Some(found.no_closed_missing);
         response.branches = found.branches.iter().map(|b| self.shown_branch(b)).collect();
         for change in &found.changes {
             let list = match change.change {
@@ -327,6 +326,20 @@ impl Subject<'_> {
             Fate::Away => Destination { fate: "away", state: None, amplitudes: Vec::new() },
         })
     }
+}
+
+/// What may be missing of branches.
+fn missing(value: &Response) -> Vec<Remark> {
+    let mut remarks = Vec::new();
+    let broken = value.branches.iter().filter(|branch| !branch.complete).count();
+    if broken > 0 {
+        remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
+    }
+    if value.no_closed_missing == Some(false) {
+        let text = "closed branches that lie between the values searched may be missing: more values find more";
+        remarks.push(Remark(text.to_owned()));
+    }
+    remarks
 }
 
 /// The least and the largest of some values.

@@ -54,8 +54,14 @@ impl Subject<'_> {
         };
         let amplitudes = zero.enclosure[..n].chunks_exact(2).map(amplitude);
         let (amplitudes, value) =
-            (amplitudes.collect::<Option<_>>()?, self.proved_value(zero.enclosure[n])?);
-        Some(Change { value, amplitudes, branch: change.branch })
+            (amplitudes.collect::<Option<Vec<_>>>()?, self.proved_value(zero.enclosure[n])?);
+        // That branches cross is not proved.
+        let shown = |number: Number| match change.change {
+            steady::Change::Crossing => Number { error: None, ..number.weaken(Status::Estimated) },
+            _ => number,
+        };
+        let amplitudes = amplitudes.into_iter().map(shown).collect();
+        Some(Change { value: shown(value), amplitudes, branch: change.branch })
     }
 
     fn proved_value(&self, value: Interval) -> Option<Number> {

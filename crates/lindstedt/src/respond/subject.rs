@@ -280,6 +280,7 @@ impl<'a> Subject<'a> {
             amplitude_limit: Estimate { value: 2.0 * reach },
             complete,
             branches: Vec::new(),
+            no_closed_missing: None,
             folds: Vec::new(),
             hopf: Vec::new(),
             crossings: Vec::new(),

@@ -12,7 +12,8 @@ const NEAR: f64 = 1e-2;
 
 impl Flow {
     /// The point of a change near `at` (w and the free parameters), proved with the vectors that belong to it: its first
-    /// intervals are w and the free parameters. Nothing where there is none near, or where it is degenerate.
+    /// intervals are w and the free parameters. Nothing where there is none near, or where it is degenerate. Of a crossing only
+    /// that beta = 0 is not excluded is proved.
     #[must_use]
     pub fn change_near(
         &self,
@@ -48,7 +49,10 @@ impl Flow {
                 let u = svd.solve(&right, cut).ok()?;
                 guess.extend(v.iter().chain(u.iter()));
             }
-            Change::Crossing => return None,
+            Change::Crossing => {
+                l = svd.u.as_ref()?.column(last).into_owned();
+                guess.extend(l.iter().chain([&0.0]));
+            }
         }
         let l: Vec<f64> = l.iter().copied().collect();
         let system = self.conditions(change, values, &l)?;
@@ -64,24 +68,9 @@ impl Flow {
         // Newton's method may have gone to another point.
         let found = zero.middle();
         let near = |i: &usize| (found[*i] - at[*i]).abs() <= 10.0 * widths[*i].max(1e-9);
-        (0..at.len()).all(|i| near(&i)).then_some(zero)
-    }
-
-    /// Whether a point at which the parameter turns back is one where branches cross: G_p lies in the range of G_w, within
-    /// rounding.
-    pub(crate) fn is_crossing(&self, values: &[Option<Value>], at: &[f64]) -> bool {
-        let n = self.unknowns();
-        let system = self.system(values);
-        if system.variables() != n + 1 || at.len() != n + 1 {
-            return false;
-        }
-        let (_, slopes) = system.derivatives(at);
-        let jacobian = DMatrix::from_fn(n, n, |i, j| slopes[i * (n + 1) + j]);
-        let by_parameter = DVector::from_fn(n, |i, _| slopes[i * (n + 1) + n]);
-        let size = jacobian.norm();
-        let svd = jacobian.svd(true, false);
-        let Some(left) = svd.u.as_ref() else { return false };
-        left.column(svd.singular_values.imin()).dot(&by_parameter).abs() < 1e-5 * size
+        // Of a crossing beta is zero.
+        let crosses = change != Change::Crossing || zero.enclosure.last()?.contains(0.0);
+        (crosses && (0..at.len()).all(|i| near(&i))).then_some(zero)
     }
 
     /// G_w.

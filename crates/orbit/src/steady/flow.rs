@@ -99,6 +99,16 @@ impl Flow {
         std::iter::repeat_n(None, self.unknowns()).chain(values.iter().cloned()).collect()
     }
 
+    /// G and det G_w, both zero at folds and where branches cross; nothing of more than two unknowns, where the determinant
+    /// has too many terms.
+    pub(super) fn turning(&self, values: &[Option<Value>]) -> Option<System> {
+        let [first, second] = &self.rows[..] else { return None };
+        let minus = &second.by(0) * &whole(-1);
+        let determinant = (&first.by(0) * &second.by(1)) + &(&first.by(1) * &minus);
+        let rows = [first.clone(), second.clone(), determinant];
+        Some(System::new(&rows, &self.given(values)))
+    }
+
     /// The number of free parameters of a change.
     #[must_use]
     pub fn free(change: Change) -> usize {
@@ -109,8 +119,8 @@ impl Flow {
     }
 
     /// The polynomials whose zeros are the points of a change, in w, the free parameters, and v (and u; for a Hopf point
-    /// a, b, rate); l is the vector with l v = 1, l u = 0 (l a = 1, l b = 0). Nothing for crossings, which are not isolated
-    /// zeros of a square system.
+    /// a, b, rate); l is the vector with l v = 1, l u = 0 (l a = 1, l b = 0). A crossing is a zero with beta = 0 of
+    /// G + beta l, v J, v G_p, l v - 1 in w, p, v, beta (Moore 1980): at a zero with another beta the branches pass each other.
     #[must_use]
     pub fn conditions(
         &self,
@@ -157,7 +167,16 @@ impl Flow {
                 rows.extend(last);
                 rows.push(form(&u));
             }
-            Change::Crossing => return None,
+            Change::Crossing => {
+                let open = values.iter().position(Option::is_none)?;
+                let beta = Polynomial::variable(first + n);
+                rows.iter_mut()
+                    .zip(&forms)
+                    .for_each(|(row, l)| *row = std::mem::take(row) + &(&beta * l));
+                let across = (0..n).chain([n + open]);
+                let by = |k: usize| self.rows.iter().map(|row| row.by(k)).collect::<Vec<_>>();
+                rows.extend(across.map(|k| dot(&by(k), &v)));
+            }
         }
         rows.push(form(&v) + &whole(-1));
         Some(System::new(&rows, &self.given(values)))

@@ -80,6 +80,9 @@ impl Plane<'_> {
 
     /// Follows the curve through a point unless it is known.
     fn through(&self, point: &Located, sample: f64, diagram: &mut Diagram) -> Option<()> {
+        if point.change == Change::Crossing {
+            return None;
+        }
         let n = self.flow.unknowns();
         let [along, across] = self.places();
         let mut start = point.proved.as_ref()?.middle();

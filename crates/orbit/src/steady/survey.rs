@@ -1,15 +1,18 @@
 //! Response curves: all branches of steady states over one parameter that pass a list of its values.
 //!
 //! At every value all states of a box are found, with proof of their number; each that no branch passes yet starts
-//! one. So a closed branch (an isola) is found where it reaches over one of the values, whatever else there is.
+//! one. A closed branch (an isola) between the values has folds where the parameter is least and largest on it: for one complex
+//! unknown these are looked for themselves, as zeros of G and det G_w in the box and the range.
 
-use super::branch::{Branch, Course, follow};
+use super::System;
+use super::branch::{Branch, Course, Point, follow};
 use super::flow::{Change, Flow};
 use super::krawczyk::{Zero, newton};
 use super::quiet::all_states;
-use super::search::{Found, Limits};
+use super::search::{Found, Limits, all_zeros};
 use super::value::Value;
 use lindstedt_number::Exact;
+use lindstedt_number::interval::Interval;
 
 /// What is asked.
 #[derive(Clone, Debug)]
@@ -35,7 +38,7 @@ pub struct Located {
     pub branch: usize,
     /// The unknowns and the parameter.
     pub at: Vec<f64>,
-    /// The same with proof, with the vectors that belong to it.
+    /// The same with proof, with the vectors that belong to it; of a crossing an enclosure, if it is one.
     pub proved: Option<Zero>,
 }
 
@@ -48,7 +51,14 @@ pub struct Response {
     pub changes: Vec<Located>,
     /// The states at the samples.
     pub searches: Vec<(Exact, Found)>,
+    /// Whether it is proved that no closed branch in the box and the range is missing.
+    pub no_closed_missing: bool,
 }
+
+/// Boxes looked at for folds.
+const MOST_BOXES: usize = 50_000;
+/// Points this near in all unknowns, in parts of the reach, are the same.
+const NEAR: f64 = 1e-4;
 
 impl Survey<'_> {
     /// The branches that pass the samples within the box. Nothing where `values` leaves other than one parameter open.
@@ -61,8 +71,12 @@ impl Survey<'_> {
         let [open] = open[..] else { return None };
         let course = Course { parameter: n, unknowns: n, ..self.course.clone() };
         let system = self.flow.system(&self.values);
-        let mut response =
-            Response { branches: Vec::new(), changes: Vec::new(), searches: Vec::new() };
+        let mut response = Response {
+            branches: Vec::new(),
+            changes: Vec::new(),
+            searches: Vec::new(),
+            no_closed_missing: false,
+        };
         for sample in &self.samples {
             let mut values = self.values.clone();
             values[open] = Some(sample.into());
@@ -88,8 +102,37 @@ impl Survey<'_> {
                 break;
             }
         }
+        response.no_closed_missing = self.between(&system, &course, &mut response.branches);
         response.changes = self.changes(&response.branches);
         Some(response)
+    }
+
+    /// Adds the branches of folds that lie on none yet; whether these are proved to be all folds.
+    fn between(&self, system: &System, course: &Course, branches: &mut Vec<Branch>) -> bool {
+        let Some(turning) = self.flow.turning(&self.values) else { return false };
+        let mut region = vec![Interval::new(-course.reach, course.reach); self.flow.unknowns()];
+        region.push(Interval::new(course.range[0], course.range[1]));
+        let boxes = self.limits.boxes.min(MOST_BOXES);
+        let limits = Limits { boxes, modulus: None, ..self.limits.clone() };
+        let Some(found) = all_zeros(&turning, &region, &limits) else { return false };
+        for fold in found.zeros.iter().map(Zero::middle) {
+            let is_here = |point: &Point| {
+                point.change == Some(Change::Fold) && self.same(&point.at, &fold, NEAR)
+            };
+            if branches.iter().flat_map(|branch| &branch.points).any(is_here) {
+                continue;
+            }
+            // From the fold itself it is not clear on which side of it a branch starts.
+            let from = follow(system, &fold, course);
+            let from = from.and_then(|branch| branch.points.get(branch.points.len() / 2).cloned());
+            branches.extend(from.and_then(|point| follow(system, &point.at, course)));
+        }
+        found.is_proved()
+    }
+
+    /// Whether two points are the same within parts of the reach.
+    fn same(&self, a: &[f64], b: &[f64], parts: f64) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < parts * self.course.reach)
     }
 
     fn changes(&self, branches: &[Branch]) -> Vec<Located> {
@@ -98,19 +141,26 @@ impl Survey<'_> {
         });
         let mut list: Vec<Located> = Vec::new();
         for (branch, point, mut change) in marked {
-            if change == Change::Fold && self.flow.is_crossing(&self.values, &point.at) {
-                change = Change::Crossing;
+            let near = |change| self.flow.change_near(change, &self.values, &point.at);
+            let (mut at, mut proved) = (point.at.clone(), None);
+            if change != Change::Crossing {
+                proved = near(change);
             }
-            let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-4 * self.course.reach;
-            let same = |known: &Located| {
-                known.change == change && known.at.iter().zip(&point.at).all(near)
-            };
+            // Where branches cross one of them may turn back; and continuation ends a little before the point.
+            if matches!(change, Change::Fold | Change::Crossing)
+                && proved.is_none()
+                && let Some(zero) = near(Change::Crossing)
+                && self.same(&zero.middle()[..at.len()], &at, NEAR)
+            {
+                (change, at) = (Change::Crossing, zero.middle()[..at.len()].to_vec());
+                proved = Some(zero);
+            }
+            let same = |known: &Located| known.change == change && self.same(&known.at, &at, NEAR);
             // Each of two branches knows their crossing.
             if change == Change::Crossing && list.iter().any(same) {
                 continue;
             }
-            let proved = self.flow.change_near(change, &self.values, &point.at);
-            list.push(Located { change, branch, at: point.at.clone(), proved });
+            list.push(Located { change, branch, at, proved });
         }
         list.sort_by(|a, b| a.at[a.at.len() - 1].total_cmp(&b.at[b.at.len() - 1]));
         list

@@ -126,7 +126,7 @@ fn sweep(value: &Response, name: &str, absence: bool) -> Document {
 }
 
 /// The equation itself, integrated upwards and downwards.
-const FOLLOWED: [(&str, Mark); 2] = [("upwards", Mark::Triangle(4)), ("downwards", Mark::Disc(2))];
+const FOLLOWED: [(&str, Mark); 2] = [("upwards", Mark::Cross(4)), ("downwards", Mark::Ring(3))];
 
 /// The largest step from one value to the next, upwards and downwards: where the motion jumps.
 fn jumps(value: &Response, name: &str) -> Option<Document> {
@@ -321,7 +321,11 @@ impl Present for Answer<Response> {
         }
         for (word, change) in changes(value) {
             let points = change.amplitudes.iter().map(|a| (decimal(&change.value), decimal(a)));
-            let mark = if word == "fold" { Mark::Disc(4) } else { Mark::Triangle(5) };
+            let mark = match word {
+                "fold" => Mark::Disc(4),
+                "Hopf point" => Mark::Triangle(5),
+                _ => Mark::Square(4),
+            };
             figure = figure.layer(Some(word), mark, colours::BLACK, points);
         }
         Some(figure)
