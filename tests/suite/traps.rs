@@ -17,7 +17,7 @@ fn every_trap_is_refused_by_its_own_name() {
     let forced = |force: &str| format!("x'' + x + eps*x^3 = eps*{force}");
     let alike = [AVERAGE, RESPOND, VERIFY];
     let traps: [(&str, &[Question], &str, &str); 6] = [
-        (&forced("cos(sqrt(2)*t)"), &alike, "ratio-not-rational", "is not rational"),
+        (&forced("cos(sqrt(2)*t)"), &alike, "ratio-not-rational", "irrational number"),
         (&forced("cos((1 + sigma)*t)"), &alike, "detuning-not-small", "is not small"),
         (&forced("cos(1000001/1000000*t)"), &[VERIFY], "near-miss", "misses a resonance"),
         (
@@ -32,7 +32,7 @@ fn every_trap_is_refused_by_its_own_name() {
             "no-rational-modes",
             "strongly coupled modes without rational form",
         ),
-        (&forced("cos(t/2^(1/2))"), &alike, "ratio-not-rational", "is not rational"),
+        (&forced("cos(t/2^(1/2))"), &alike, "ratio-not-rational", "irrational number"),
     ];
     for (equation, questions, code, words) in traps {
         let case = Oscillator::parse(equation).unwrap();

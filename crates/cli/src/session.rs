@@ -386,8 +386,9 @@ fn at_place(path: &str, error: Error) -> Failure {
     Failure { message: format!("{}:{line}:{column}: {kind}", shown(path)), ..failure }
 }
 
+/// A path, whole: paths are as long as file systems allow, far more is an argument that is none.
 fn shown(name: &str) -> String {
-    name.chars().take(60).collect()
+    name.chars().take(4096).collect()
 }
 
 /// The text of a file, if it is a file of a reasonable size: devices, pipes and what is too large

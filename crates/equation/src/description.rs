@@ -190,10 +190,7 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
             "{}: forces are cos or sin of multiples of one omega*t by numbers, without a phase",
             show(e)
         ),
-        Reason::IrrationalRatio(e) => format!(
-            "{}: the ratio of its frequency to that of the oscillator is not rational",
-            show(e)
-        ),
+        Reason::IrrationalRatio(e) => format!("{}: its frequency is an irrational number", show(e)),
         Reason::LargeDetuning(e) => {
             format!("{}: the detuning in its frequency is not small", show(e))
         }

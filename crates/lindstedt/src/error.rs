@@ -172,6 +172,11 @@ impl Error {
         matches!(source, Some(ExpandError::Phase { source: PhaseError::Resonance { .. }, .. }))
     }
 
+    /// Whether a frequency that is no formula in the coefficients is the reason.
+    pub(crate) fn is_irrational_frequency(&self) -> bool {
+        matches!(self.expand(), Some(ExpandError::StiffnessNotSquare))
+    }
+
     /// What the driver said.
     #[must_use]
     pub fn expand(&self) -> Option<&ExpandError> {

@@ -106,6 +106,9 @@ impl Oscillator {
                               of the function";
             remarks.push(Remark(polynomial.to_owned()));
         }
+        if let [only] = &file.problem.unknowns[..] {
+            remarks.push(Remark(format!("where an answer names its own quantities, x is {only}")));
+        }
         let (problem, origin) = (file.problem.clone(), file.problem.name.to_string());
         let (values, condition, bare) = (BTreeMap::new(), None, false);
         Ok(Self { problem, file, origin, values, condition, bare, remarks })
@@ -130,7 +133,7 @@ impl Oscillator {
         let list: Vec<&str> = equation.split(';').filter(|e| !e.trim().is_empty()).collect();
         let names = match &list[..] {
             [_, _, ..] => Names::any("eps").of_system(list.iter().copied()),
-            _ => Names::any("eps"),
+            _ => Names::any("eps").of_one(equation),
         };
         // A place in the equation, not in a file.
         list.iter().try_for_each(|text| parse_equation(text, &names).map(drop))?;

@@ -59,7 +59,9 @@ impl Oscillator {
             return Ok(found);
         }
         match self.average(order, work) {
-            Err(error) if error.is_resonance() => flow().map_err(|flow| match flow {
+            Err(error) if error.is_resonance() => flow(),
+            // An irrational frequency beside a force is enclosed.
+            Err(error) if error.is_irrational_frequency() => flow().map_err(|flow| match flow {
                 Error::Derivation(DerivationError::Resonance(_)) => error,
                 other => other,
             }),

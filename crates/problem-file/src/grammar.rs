@@ -13,7 +13,7 @@
 
 use crate::error::{Expectation, Limit, ParseError, ParseErrorKind, excerpt};
 use crate::lexer::{Kind, Token, tokens};
-use crate::names::Names;
+use crate::names::{Names, is_parameter_name};
 use crate::trees::{degree, multiply, negated, unordered};
 use lindstedt_equation::Expression;
 use rug::Rational;
@@ -40,6 +40,22 @@ impl Names {
         }
         self.unknowns = unknowns;
         self
+    }
+
+    /// The same with the unknown of one equation: the only name with primes, which may be another than x where x does not
+    /// occur, is declared nowhere, and means nothing else.
+    #[must_use]
+    pub fn of_one(self, equation: &str) -> Self {
+        let list = tokens(equation).unwrap_or_default();
+        let mentions_x = list.iter().any(|token| token.kind == Kind::Name("x".to_owned()));
+        let named = self.clone().of_system([equation]);
+        let declared = |name| self.parameters.as_ref().is_some_and(|list| list.contains(name));
+        match &named.unknowns[..] {
+            [only] if is_parameter_name(only) && *only != self.small => {
+                if mentions_x || declared(only) { self } else { named }
+            }
+            _ => self,
+        }
     }
 }
 

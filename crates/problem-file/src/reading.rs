@@ -50,8 +50,8 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     let known = |name: &str| declared.contains(name) || name == small || name == "amplitude";
     let (fixed, swept, unknown) = fixed_and_swept(reader, &schema, &known, &cards)?;
     let unused = unused(&schema, sides, amplitude, &declared, &follows);
-    let several = !others.is_empty();
-    let unknowns = names.unknowns.iter().filter(|_| several).map(|name| name.clone().into());
+    let usual = names.unknowns == ["x"];
+    let unknowns = names.unknowns.iter().filter(|_| !usual).map(|name| name.clone().into());
     let mut problem = Problem::new(name, equation)
         .with_others(others, unknowns.collect())
         .with_title(schema.title.clone())
@@ -96,8 +96,8 @@ fn known_names(
         None => Names::any(small),
     };
     let names = Names { formal: formal_names(reader, schema)?, ..names };
-    if schema.equations.len() == 1 {
-        return Ok(names);
+    if let [only] = &schema.equations[..] {
+        return Ok(names.of_one(only.get_ref()));
     }
     let names = names.of_system(schema.equations.iter().map(|text| text.get_ref().as_str()));
     let (unknowns, equations) = (names.unknowns.len(), schema.equations.len());

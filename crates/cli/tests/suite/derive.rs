@@ -213,3 +213,72 @@ fn a_time_limit_over_the_rationals() {
     let message = error["error"]["message"].as_str().unwrap();
     assert!(message.contains("over Q") && message.contains("proved at the end"), "{message}");
 }
+
+fn refused(arguments: &[&str]) -> String {
+    let output = lindstedt(arguments);
+    assert!(!output.status.success(), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// Two forces whose frequencies add up to 2 with long fractions: the same resonance as with short ones, and the coefficient of
+/// zbar of Nayfeh and Mook, section 4.1.4: -3 i/4 F G/((1 - w^2)(1 - v^2)), up to the sign of i by hand from
+/// u_0 = F/(2 (1 - w^2)) E_1 + G/(2 (1 - v^2)) E_2 + c.c., f_1 = (i/2) 6 z-bar times both.
+#[test]
+fn forces_with_long_fractions_keep_their_combination_resonance() {
+    let equation = "x'' + x + eps*x^3 = F*cos(0.70711*t) + G*cos(1.29289*t)";
+    let found = text(&["derive", equation, "--order", "1"]);
+    let rest = |w: f64| 1.0 - w * w;
+    let expected = 0.75 / (rest(0.70711) * rest(1.29289));
+    let line = found.lines().find(|line| line.starts_with("  f_1")).unwrap();
+    let term = line.split(" - ").nth(1).unwrap();
+    let (size, factors) = term.split_once("*i*").unwrap();
+    let (n, d) = size.split_once('/').unwrap();
+    let size = -n.parse::<f64>().unwrap() / d.parse::<f64>().unwrap();
+    assert!((size - expected).abs() < 1e-12 && factors.starts_with("F*G*zbar*E_1*E_2"), "{line}");
+    assert!(found.contains("eta_2' = 129289/100000") && found.contains("vanishes identically"));
+    // 7071 and 12929 times one phase went beyond its exponents.
+    let shorter = "x'' + x + eps*x^3 = F*cos(0.7071*t) + G*cos(1.2929*t)";
+    assert!(text(&["derive", shorter, "--order", "1"]).contains("zbar*E_1*E_2"));
+}
+
+/// (3/2) i/sqrt(2) z^2 zbar; and the mean square of the force's response is no part of order one.
+#[test]
+fn an_irrational_frequency_beside_a_force_is_enclosed() {
+    let found = text(&["derive", "x'' + 2*x + eps*x^3 = eps*F*cos(t)", "--order", "1"]);
+    assert!(found.contains("f_1 = 1.0606601717798212866"), "{found}");
+    assert!(found.contains("encloses zero at orders 0 to 1"), "{found}");
+}
+
+#[test]
+fn refusals_of_irrational_linear_parts_are_true() {
+    let roots = "x'' + sqrt(2)*x + eps*x*y; y'' + 4*sqrt(2)*y + eps*x^2";
+    assert!(refused(&["derive", roots]).contains("2^(1/2), a factor of x in the linear part"));
+    // The golden ratio and its inverse differ by 1.
+    let golden = refused(&["derive", "x'' + 2*x - y + eps*x*cos(t); y'' + y - x", "--order", "1"]);
+    assert!(golden.contains("no --digits decide it where it is zero"), "{golden}");
+    let same = refused(&["derive", "x'' + 2*x + eps*x^3 = eps*F*cos(sqrt(2)*t)"]);
+    assert!(same.contains("irrational number") && same.contains("tau = sqrt(2)*t"), "{same}");
+    let symbol = refused(&["derive", "x'' + omega0^2*x + eps*x^3 = eps*F*cos(omega0*t)"]);
+    assert!(symbol.contains("tau = omega0*t"), "{symbol}");
+}
+
+/// The same numbers by any name of the unknown.
+#[test]
+fn one_unknown_has_any_name() {
+    let series = |equation| json(&["derive", equation, "--order", "3"])["series"].clone();
+    let x = series("x'' + x + eps*x^3 = 0");
+    assert!(!x.is_null() && x == series("y'' + y + eps*y^3 = 0"));
+    assert_eq!(x, series("theta'' + theta + eps*theta^3"));
+    let forced = text(&["derive", "y'' + y + eps*y^3 = eps*F*cos(t)", "--order", "1"]);
+    assert!(forced.contains("  y = z + zbar") && forced.contains("f_1 = -1/4*i*F*E"), "{forced}");
+    for mixed in ["y'' + x", "eps'' + eps", "sin'' + sin"] {
+        assert!(refused(&["derive", mixed]).contains("is no function of time"), "{mixed}");
+    }
+}
+
+#[test]
+fn the_path_of_an_unreadable_file_is_whole() {
+    let path =
+        "a-folder/that/does/not/exist/with/a/rather/long/path/to/it/that/is/shown/whole.toml";
+    assert!(refused(&["derive", path]).contains(path));
+}

@@ -72,6 +72,14 @@ pub enum ResonanceError {
         /// The parameter.
         name: String,
     },
+    /// A factor of the linear part that is no rational number.
+    #[error("{factor}, a factor of {unknown} in the linear part, is no rational number")]
+    IrrationalFactor {
+        /// The factor.
+        factor: String,
+        /// What it is a factor of.
+        unknown: String,
+    },
     /// A frequency that must be rational is the root of a rational number.
     #[error("a frequency is irrational: the squares are {squares}")]
     NoRationalModes {

@@ -144,12 +144,18 @@ fn ratio(a: &[Rational], b: &[Rational]) -> Option<Rational> {
     a.iter().zip(b).all(|(a, b)| *a == Rational::from(&q * b)).then_some(q)
 }
 
-/// Forces of one phase: the rate and the rest of the angle of the first, and what the rates of all are multiples of.
+/// Forces of one phase: the rate and the rest of the angle of the first, what the rates of all are multiples of, and
+/// the largest of their ratios to the first.
 struct Class {
     first: Vec<Rational>,
     angle: Angle,
     common: Rational,
+    largest: Rational,
 }
+
+/// The highest harmonic that is taken of one phase: exponents of E are held in words. Beyond it forces have phases of
+/// their own, whose rates are numbers, so that what is resonant is decided as exactly.
+const HIGHEST: u32 = 1000;
 
 impl Class {
     /// The ratio of an angle's rate to that of the first force, where it is rational at all orders.
@@ -159,6 +165,18 @@ impl Class {
         let (own, known) = (&angle.rate, &self.angle.rate);
         let differs = |n| gap(&at(own, n), &ratio, &at(known, n)).is_some();
         (!(0..own.len().max(known.len())).any(differs)).then_some(ratio)
+    }
+
+    /// Takes a force of this phase, where all its forces stay harmonics below [`HIGHEST`].
+    fn take(&mut self, leading: &[Rational], angle: &Angle) -> bool {
+        let Some(ratio) = self.ratio(leading, angle) else { return false };
+        let common = divisor(&self.common, &ratio);
+        let largest = ratio.abs().max(self.largest.clone());
+        let fits = Rational::from(&largest / &common) <= HIGHEST;
+        if fits {
+            (self.common, self.largest) = (common, largest);
+        }
+        fits
     }
 
     fn phase(&self) -> Phase {
@@ -198,10 +216,8 @@ pub(super) fn phases(
     let mut classes: Vec<Class> = Vec::new();
     for wave in equations.iter().flat_map(Expression::nodes).filter(|e| is_wave(e)) {
         let (first, angle) = read(wave)?;
-        let of = |(l, class): (usize, &Class)| Some((l, class.ratio(&first, &angle)?));
-        match classes.iter().enumerate().find_map(of) {
-            Some((l, ratio)) => classes[l].common = divisor(&classes[l].common, &ratio),
-            None => classes.push(Class { first, angle, common: 1.into() }),
+        if !classes.iter_mut().any(|class| class.take(&first, &angle)) {
+            classes.push(Class { first, angle, common: 1.into(), largest: 1.into() });
         }
     }
     let phases: Vec<Phase> = classes.iter().map(Class::phase).collect();
@@ -209,8 +225,12 @@ pub(super) fn phases(
     let rewritten = |e: &Expression| {
         let (Expression::Function(function, _), true) = (e, is_wave(e)) else { return None };
         let (leading, angle) = read(e).ok()?;
-        let l = classes.iter().position(|class| class.ratio(&leading, &angle).is_some())?;
-        let m = ratio(&leading, &phases[l].rate)?;
+        let harmonic_of = |(l, class): (usize, &Class)| {
+            class.ratio(&leading, &angle)?;
+            let m = ratio(&leading, &phases[l].rate)?;
+            (m.is_integer() && *m.as_abs() <= HIGHEST).then_some((l, m))
+        };
+        let (l, m) = classes.iter().enumerate().find_map(harmonic_of)?;
         let ahead = gap(&angle.start, &m, &phases[l].start);
         angles.borrow_mut().extend(ahead.iter().filter(|e| quarters(e).is_none()).cloned());
         let eta = Expression::parameter(&format!("{PHASE}{l}"));

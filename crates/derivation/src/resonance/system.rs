@@ -197,12 +197,18 @@ impl Prepared {
         let InPhases { phases: forces, equations, angles } =
             phases(&equations, &independent, names)?;
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
-        let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| -> Matrix {
-            let entry = |p: &Linear, j| of(p).get(&j).and_then(Expression::as_number);
-            let row = |p| (0..parts.len()).map(|j| entry(p, j).unwrap_or_default()).collect();
-            parts.iter().map(row).collect()
+        let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| {
+            let entry = |p: &Linear, j| match of(p).get(&j) {
+                None => Ok(Rational::new()),
+                Some(e) => e.as_number().ok_or_else(|| ResonanceError::IrrationalFactor {
+                    factor: names.shown(e),
+                    unknown: names.0.unknown(j),
+                }),
+            };
+            let row = |p| (0..parts.len()).map(|j| entry(p, j)).collect();
+            parts.iter().map(row).collect::<Result<Matrix, _>>()
         };
-        let (mass, stiffness) = (matrix(&|p| &p.mass), matrix(&|p| &p.stiffness));
+        let (mass, stiffness) = (matrix(&|p| &p.mass)?, matrix(&|p| &p.stiffness)?);
         Ok(Self { equations, forces, independent, angles, mass, stiffness, bound })
     }
 }

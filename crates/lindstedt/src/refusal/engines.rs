@@ -17,6 +17,16 @@ use lindstedt_simulate::SimulateError;
 const AT_RESONANCE: &str =
     "write the frequency at the resonance and the difference as a detuning: eps*sigma*x";
 
+/// What to do where the unit of time is a symbol.
+const SCALED_TIME: &str = "--set NAME=VALUE, for example 1/10; where all frequencies are multiples of one symbol omega0, write the \
+     equation in the time tau = omega0*t, divided by omega0^2: x'' stays, omega0^2*x becomes x, cos(omega0*t) cos(t), mu*x' \
+     mu*x' with mu/omega0 for mu, other coefficients c with c/omega0^2 for c; rates in t are omega0 times those in tau";
+
+/// What to do where a divisor may be zero. The frequencies are then roots of a polynomial, and taken to be independent.
+const EXACT_RELATION: &str = "no --digits decide it where it is zero, more of them where it is only small: give the \
+     frequencies a rational ratio (linear terms with fractions, the difference as eps*sigma*x); `lindstedt simulate` takes it \
+     as it is";
+
 impl Refusal for ExpandError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {
@@ -70,9 +80,7 @@ impl Refusal for ResonanceError {
                 "second-phase",
                 "forces are cos(m*omega*t) of one omega, detuned together: cos(m*(1 + eps*sigma)*t)",
             ),
-            Self::UndecidedDivisor { .. } => {
-                (Undecided, "undecided", "more digits (--digits), or a frequency as a fraction")
-            }
+            Self::UndecidedDivisor { .. } => (Undecided, "undecided", EXACT_RELATION),
             Self::NotAForce { .. } | Self::Acceleration { .. } | Self::Delay { .. } => {
                 (NoAnswer, "no-method", "`lindstedt simulate` takes it")
             }
@@ -82,7 +90,7 @@ impl Refusal for ResonanceError {
             Self::Equations { .. } => {
                 (Usage, "second-unknown", "one equation for every unknown, separated by `;`")
             }
-            Self::Unset { .. } => (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10"),
+            Self::Unset { .. } => (Usage, "no-value-set", SCALED_TIME),
             Self::NotSought { .. } => {
                 (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
             }
@@ -100,6 +108,11 @@ impl Refusal for ResonanceError {
                 NoAnswer,
                 "no-rational-modes",
                 "needs rational frequencies; a small difference is a detuning eps*sigma*x",
+            ),
+            Self::IrrationalFactor { .. } => (
+                NoAnswer,
+                "irrational",
+                "a fraction near it, with the difference as eps*sigma*x; `lindstedt simulate` takes it as it is",
             ),
             Self::NoOscillation { .. } => (NoAnswer, "no-expansion", ""),
             Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),

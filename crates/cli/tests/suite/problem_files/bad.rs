@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::process::{Command, Output};
 
 /// Equations that are wrong: exit code, equation, a piece of the message.
-const EQUATIONS: [(i32, &str, &str); 61] = [
+const EQUATIONS: [(i32, &str, &str); 62] = [
     (2, "", "expected a number, a name or a parenthesis, found the end"),
     (2, "   ", "found the end"),
     (2, "= 0", "found `=`"),
@@ -27,7 +27,8 @@ const EQUATIONS: [(i32, &str, &str); 61] = [
     (2, "x'' + i*x = 0", "not declared"),
     (2, "x''' + x = 0", "a derivative of order 3"),
     (2, "x'''' + x = 0", "a derivative of order 4"),
-    (2, "y'' + y = 0", "y is no function of time"),
+    (2, "y'' + y = 0", "the small parameter eps does not occur"),
+    (2, "y'' + x = 0", "y is no function of time"),
     (2, "k'*x + x'' = 0", "k is no function of time"),
     (2, "x + eps*x^3 = 0", "neither x'' nor x' occurs"),
     (2, "x' + x = 0", "the small parameter eps does not occur"),
