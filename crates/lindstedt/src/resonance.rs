@@ -4,7 +4,7 @@ use crate::averaging::Averaging;
 use crate::{Answer, DerivationError, Error, Oscillator, SlowFlow, Work};
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::check_parameters;
-use lindstedt_derivation::resonance::{self, NormalMode, Sought, SoughtBranch};
+use lindstedt_derivation::resonance::{self, NormalMode, ResonanceError, Sought, SoughtBranch};
 use lindstedt_equation::Expression;
 use lindstedt_expand::Excitation;
 use serde::Serialize;
@@ -59,7 +59,13 @@ impl Oscillator {
             return Ok(found);
         }
         match self.average(order, work) {
-            Err(error) if error.is_resonance() => flow(),
+            // A delay tied to the period of the force is averaging's, and so is the reason why it fails there.
+            Err(error) if error.is_resonance() => flow().map_err(|flow| match flow {
+                Error::Derivation(DerivationError::Resonance(ResonanceError::Delay { .. })) => {
+                    error
+                }
+                other => other,
+            }),
             // An irrational frequency beside a force is enclosed.
             Err(error) if error.is_irrational_frequency() => flow().map_err(|flow| match flow {
                 Error::Derivation(DerivationError::Resonance(_)) => error,
