@@ -152,6 +152,14 @@ fn quarters_of_a_turn() {
     let quarter = flow(&["x'' + x + eps*k*x(t - pi/2)"], 1, &[]);
     let parts: Vec<_> = quarter.flow[0][1].iter().map(|t| (t.re.clone(), t.im.clone())).collect();
     assert_eq!(parts, [(Rational::from((1, 2)), Rational::new())]);
+    // Two eighths, by the characteristic root: f_2 = k^2 e^(-2iT) (T/4 - i/8) z = -k^2 (1/8 + i pi/16) z.
+    let eighth = flow(&["x'' + x + eps*k*x(t - pi/4)"], 2, &[]);
+    let place = eighth.factors().iter().position(|name| name == "pi").unwrap();
+    let second =
+        eighth.flow[0][2].iter().map(|t| (t.exponents[place], [t.re.clone(), t.im.clone()]));
+    let by_hand = [(0, [(-1, 8), (0, 1)]), (1, [(0, 1), (-1, 16)])];
+    let by_hand = by_hand.map(|(power, c)| (power, c.map(Rational::from)));
+    assert_eq!(second.collect::<BTreeMap<_, _>>(), by_hand.into());
     // Three times a third of a turn.
     let common = flow(&["x'' + x + eps*(x(t - pi/3) + k*x(t - pi))"], 1, &[]);
     assert_eq!(common.system.symbols, ["k", "pi", "cos(1/3*pi)", "sin(1/3*pi)"]);
