@@ -2,6 +2,8 @@
 
 mod cycles;
 mod delays;
+mod enclosed_flows;
+mod invariants;
 mod limits;
 mod normal_mode;
 mod resonance;

@@ -13,10 +13,14 @@ use rug::Rational;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-type Powers = BTreeMap<String, i32>;
-type Named = BTreeMap<Powers, [Rational; 2]>;
+pub type Powers = BTreeMap<String, i32>;
+pub type Named = BTreeMap<Powers, [Rational; 2]>;
 
-fn found(equation: &str, order: usize, set: &[(&str, &str)]) -> Result<SlowFlow, DerivationError> {
+pub fn found(
+    equation: &str,
+    order: usize,
+    set: &[(&str, &str)],
+) -> Result<SlowFlow, DerivationError> {
     let list: Vec<String> = equation.split(';').map(|text| format!("{text:?}")).collect();
     let file = format!("equations = [{}]", list.join(", "));
     let problem = ProblemFile::parse(&file).unwrap().problem;
@@ -26,13 +30,13 @@ fn found(equation: &str, order: usize, set: &[(&str, &str)]) -> Result<SlowFlow,
     slow_flow(&problem, &settings, &mut |_| true)
 }
 
-fn flow(equation: &str, order: usize, set: &[(&str, &str)]) -> SlowFlow {
+pub fn flow(equation: &str, order: usize, set: &[(&str, &str)]) -> SlowFlow {
     let found = found(equation, order, set).unwrap();
     assert_eq!(found.checked_orders, Some(order));
     found
 }
 
-fn refused(equation: &str) -> ResonanceError {
+pub fn refused(equation: &str) -> ResonanceError {
     match found(equation, 2, &[]) {
         Err(DerivationError::Resonance(error)) => error,
         other => panic!("{equation}: {:?}", other.map(|found| found.order)),
@@ -40,7 +44,7 @@ fn refused(equation: &str) -> ResonanceError {
 }
 
 /// Terms by the names of their factors.
-fn named(found: &SlowFlow, terms: &[AmplitudeTerm]) -> Named {
+pub fn named(found: &SlowFlow, terms: &[AmplitudeTerm]) -> Named {
     let phases = (1..=found.unknowns()).flat_map(|j| [format!("z{j}"), format!("zbar{j}")]);
     let forces = found.factors()[2 * found.unknowns()..].to_vec();
     let names: Vec<String> = phases.chain(forces).collect();
@@ -141,7 +145,7 @@ fn refusals() {
 }
 
 /// Terms by hand: `1/4 i h zbar1 E`, without the sign of multiplication.
-fn by_hand(list: &[&str]) -> Named {
+pub fn by_hand(list: &[&str]) -> Named {
     let term = |text: &&str| {
         let mut words = text.split_whitespace().peekable();
         let number: Rational = words.next().unwrap().parse().unwrap();
@@ -360,190 +364,6 @@ fn phases_of_forces() {
     let two = flow("x'' + x = eps*F*cos(t) + eps*G*cos(t + phi)", 1, &[]);
     let expected = "(-1/4*i*F - 1/4*i*G*cos(phi) + 1/4*G*sin(phi))*E";
     assert_eq!(two.print(&two.flow[0][1], Style::Text), expected);
-}
-
-/// The coupled masses of Kerschen et al. (MSSP 23, 2009) with the frequencies 1 and sqrt(3): the flow restricted to the first
-/// mode is its exact backbone (normal modes have rational coefficients), the rest is enclosed.
-#[test]
-fn irrational_modes() {
-    let text = "x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x";
-    let found = flow(text, 3, &[]);
-    let enclosed = found.enclosed.unwrap();
-    assert!(0.0 < enclosed.radius && enclosed.radius < 1e-30, "{enclosed:?}");
-    assert!(0.0 < enclosed.residual && enclosed.residual < 1e-25, "{enclosed:?}");
-    assert_eq!(found.system.squares, [1, 3]);
-    let residual = serde_json::json!({"checked_orders": 3, "zero": null, "encloses_zero": true});
-    assert_eq!(serde_json::to_value(&found).unwrap()["residual"], residual);
-    // Order 1 by hand: x = q_1 + q_2, q_j'' + nu_j^2 q_j + eps x^3/4, so that
-    // f_2 = i/(8 sqrt 3) (3 z_2^2 zbar_2 + 6 z_1 zbar_1 z_2).
-    let second = named(&found, &found.flow[1][1]);
-    let root = 3f64.sqrt();
-    let known = by_hand(&["3 i z2^2 zbar2", "6 i z1 zbar1 z2"]);
-    assert_eq!(second.len(), 2);
-    for (powers, [_, im]) in known {
-        let [re, value] = &second[&powers];
-        assert!(re.is_zero() && (value.to_f64() - im.to_f64() / (8.0 * root)).abs() < 1e-15);
-    }
-    // The backbone of the first mode, Omega^2 = 1 + 3/16 rho - 101/2048 rho^2 + ..., by exact orders.
-    let mut omega = vec![1.0];
-    for n in 1..=3 {
-        let alone = |t: &&AmplitudeTerm| t.exponents[2] == 0 && t.exponents[3] == 0;
-        let [term] = found.flow[0][n].iter().filter(alone).collect::<Vec<_>>()[..] else {
-            panic!()
-        };
-        // i c z |z|^(2n), |z|^2 = rho/4.
-        omega.push(term.im.to_f64() / 4f64.powi(n as i32));
-    }
-    let square = |n: usize| (0..=n).map(|k| omega[k] * omega[n - k]).sum::<f64>();
-    let expected = [3.0 / 16.0, -101.0 / 2048.0, 9365.0 / 786_432.0];
-    for (n, expected) in (1..).zip(expected) {
-        assert!((square(n) - expected).abs() < 1e-15, "{n}: {}", square(n));
-    }
-    // Frequencies of one class are in resonance exactly: sqrt(2) and 2 sqrt(2).
-    let one_two = flow("x'' + 2*x + 2*eps*x*y; y'' + 8*y + eps*x^2", 1, &[]);
-    let exchange = named(&one_two, &one_two.flow[0][1]);
-    assert_eq!(
-        exchange.keys().collect::<Vec<_>>(),
-        by_hand(&["1 zbar1 z2"]).keys().collect::<Vec<_>>()
-    );
-    let gap = exchange.values().next().unwrap()[1].to_f64() - 1.0 / 2f64.sqrt();
-    assert!(gap.abs() < 1e-15, "{gap}");
-}
-
-/// Two masses of which the frequencies are the golden ratio phi and 1/phi. Order 1 by hand: x = q_1 + q_2 with the shapes (1, phi)
-/// and (1, -1/phi), q_j'' + nu_j^2 q_j + eps x^3/(2 |shape|^2), so that
-/// f_j = i/(4 nu_j |shape_j|^2) (3 z_j^2 zbar_j + 6 z_k zbar_k z_j).
-#[test]
-fn golden_modes() {
-    let found = flow("x'' + 2*x - y + eps*x^3/2; y'' + y - x", 3, &[]);
-    let enclosed = found.enclosed.unwrap();
-    assert!(0.0 < enclosed.radius && enclosed.radius < 1e-30, "{enclosed:?}");
-    assert!(0.0 < enclosed.residual && enclosed.residual < 1e-25, "{enclosed:?}");
-    assert_eq!(found.checked_orders, Some(3));
-    let phi = (1.0 + 5f64.sqrt()) / 2.0;
-    let shapes = found.print_shapes(Style::Text);
-    assert!(shapes[0] == "x = q_1 + q_2" && shapes[1].starts_with("y = 1.61803398874989484820"));
-    let known = [["3 i z1^2 zbar1", "6 i z2 zbar2 z1"], ["3 i z2^2 zbar2", "6 i z1 zbar1 z2"]];
-    for (j, (nu, tip)) in [(1.0 / phi, phi), (phi, -1.0 / phi)].into_iter().enumerate() {
-        assert!((found.system.frequencies[j].to_f64() - nu).abs() < 1e-15);
-        let first = named(&found, &found.flow[j][1]);
-        assert_eq!(first.len(), 2);
-        for (powers, [_, im]) in by_hand(&known[j]) {
-            let [re, value] = &first[&powers];
-            let expected = im.to_f64() / (4.0 * nu * (1.0 + tip * tip));
-            assert!(re.is_zero() && (value.to_f64() - expected).abs() < 1e-15, "{powers:?}");
-        }
-    }
-}
-
-/// Digits that are printed are certain: those of a root to as many as asked for (by Python's decimal), and none of a coefficient
-/// that the radius covers.
-#[test]
-fn digits_of_enclosures() {
-    let text = "equations = [\"x'' + 2*x - y + eps*x^3/2\", \"y'' + 2*y - x\"]";
-    let problem = ProblemFile::parse(text).unwrap().problem;
-    let settings = AveragingSettings { order: 1, digits: 100, ..AveragingSettings::default() };
-    let found = slow_flow(&problem, &settings, &mut |_| true).unwrap();
-    let root = "1.73205080756887729352744634150587236694280525381038\
-                0628055806979451933016908800037081146186757248576";
-    assert_eq!(found.number(&found.system.frequencies[1]), root);
-    assert_eq!(found.system.frequencies[0], 1);
-    let small = flow("x'' + 2*x + eps*(x^3/10^60 - x^5/10^40)", 1, &[]);
-    let [first, rest] =
-        [Style::Text, Style::Latex].map(|style| small.print(&small.flow[0][1], style));
-    // -10/(2 sqrt 2) = -3.5355339059327376...
-    assert!(
-        first.starts_with("(0 +- ") && first.contains("e-55)*i*z^2*zbar - 3.53553390593"),
-        "{first}"
-    );
-    assert!(rest.starts_with(r"(0 \pm ") && rest.contains(r"\cdot 10^{-55})\,i\,z^{2}"), "{rest}");
-    let digits = first.split("- ").last().unwrap().split("e-40").next().unwrap();
-    assert!(
-        (13..18).contains(&digits.len())
-            && "3.53553390593273762".contains(&digits[..digits.len() - 1]),
-        "{first}"
-    );
-}
-
-/// The energy along a flow is a slow quantity. Of masses 1 and 3 the second equation is divided by 3; its weight is found. By
-/// hand, order 0: 2 nu_j^2 |z_j|^2 of each; a force that is no gradient has none.
-#[test]
-fn energy_is_conserved() {
-    let found = flow("x'' + x + 2*eps*x*y + eps*al*x^3; 3*y'' + 12*y + eps*x^2", 3, &[]);
-    let order = |n: usize| named(&found, &found.energy[n]);
-    assert_eq!(order(0), by_hand(&["2 z1 zbar1", "24 z2 zbar2"]));
-    // No fast phase: the eigenvalue of every monomial is 0.
-    let fast =
-        |t: &AmplitudeTerm| t.exponents[0] - t.exponents[1] + 2 * (t.exponents[2] - t.exponents[3]);
-    assert!(found.energy[1..].iter().all(|terms| !terms.is_empty()));
-    assert!(found.energy.iter().flatten().all(|t| fast(t) == 0));
-    let other = flow("x'' + x + eps*x*y; y'' + 4*y - eps*x^2", 1, &[]);
-    assert!(other.energy.is_empty());
-    assert!(flow("x'' + x + eps*x^2*x'", 1, &[]).energy.is_empty());
-    // Frequencies 1 and sqrt 2, V = eps x^2 y^2: <V> and the velocities, whose frequencies move by 2 |z_2|^2 and
-    // |z_1|^2 sqrt 2, add 4 |z_1 z_2|^2 each.
-    let enclosed = flow("x'' + x + 2*eps*x*y^2; y'' + 2*y + 2*eps*x^2*y", 1, &[]);
-    for (n, expected) in
-        [&["2 z1 zbar1", "4 z2 zbar2"][..], &["12 z1 zbar1 z2 zbar2"]].iter().enumerate()
-    {
-        let energy = named(&enclosed, &enclosed.energy[n]);
-        let expected = by_hand(expected);
-        assert_eq!(energy.len(), expected.len());
-        for (powers, [re, _]) in expected {
-            let gap = (energy[&powers][0].clone() - re).to_f64().abs();
-            assert!(gap <= enclosed.enclosed.unwrap().radius, "{gap:e}");
-        }
-    }
-    // Modes of coupled masses, and enclosed ones.
-    assert_eq!(flow("2*x'' + 5*x - 3*y + eps*x^3; 2*y'' + 5*y - 3*x", 2, &[]).energy.len(), 3);
-    assert_eq!(flow("x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x", 2, &[]).energy.len(), 3);
-}
-
-/// 2 Re(zbar_j f_j) by hand: of 1:2 through V = eps x^2 y |z_1|^2 + 4 |z_2|^2, of 1:3 through V = eps x^3 y |z_1|^2 + 9 |z_2|^2,
-/// the weights of the energy at order zero; of 1:2 with a third unknown without a resonance two. Damping keeps none.
-#[test]
-fn quadratic_invariants() {
-    let forms = |equation: &str, order: usize| -> Vec<(Named, usize)> {
-        let found = flow(equation, order, &[]);
-        let list = found.quadratic_invariants();
-        list.iter().map(|form| (named(&found, &form.terms), form.orders)).collect()
-    };
-    let pair = "x'' + x + 2*eps*x*y + eps*al*x^3; y'' + 4*y + eps*x^2";
-    let known = by_hand(&["1 z1 zbar1", "4 z2 zbar2"]);
-    assert_eq!(forms(pair, 1), [(known.clone(), 1)]);
-    let third = format!("{pair}; w'' + 2*w");
-    assert!(flow(&third, 1, &[]).quadratic_invariants().is_empty());
-    let third = format!("{pair}; w'' + 25*w + eps*w^3");
-    assert_eq!(forms(&third, 1), [(known, 1), (by_hand(&["1 z3 zbar3"]), 1)]);
-    let known = by_hand(&["1 z1 zbar1", "9 z2 zbar2"]);
-    assert_eq!(forms("x'' + x + 3*eps*x^2*y; y'' + 9*y + eps*x^3", 1), [(known, 1)]);
-    assert!(forms("x'' + x + eps*(x' + 2*x*y); y'' + 4*y + eps*x^2", 1).is_empty());
-    // f_1 vanishes and says nothing; one combination of what it keeps is kept by f_2 too.
-    let both = by_hand(&["1 z1 zbar1", "1 z2 zbar2"]);
-    assert_eq!(forms("x'' + x + 2*eps*x*y; y'' + y + eps*x^2", 1), []);
-    assert_eq!(forms("x'' + x + 2*eps*x*y; y'' + y + eps*x^2", 2), [(both, 2)]);
-    // Without a resonance every square is kept, to all orders.
-    let apart = forms("x'' + x + 2*eps*x*y^2; y'' + 49/25*y + 2*eps*x^2*y", 2);
-    assert_eq!(apart.iter().map(|(_, orders)| *orders).collect::<Vec<_>>(), [2, 2]);
-    // The derivative along f_1, put together from the terms that are printed.
-    let found = flow(pair, 1, &[]);
-    let mut sum = Named::new();
-    for (j, weight) in [(0, 1), (1, 4)] {
-        for term in &found.flow[j][1] {
-            let mut word = term.clone();
-            word.exponents[2 * j + 1] += 1;
-            let mut other = word.clone();
-            (0..2).for_each(|k| other.exponents.swap(2 * k, 2 * k + 1));
-            other.im *= -1;
-            for (key, [re, im]) in named(&found, &[word]).into_iter().chain(named(&found, &[other]))
-            {
-                let entry = sum.entry(key).or_default();
-                entry[0] += re * weight;
-                entry[1] += im * weight;
-            }
-        }
-    }
-    assert!(!sum.is_empty() && sum.values().flatten().all(Rational::is_zero));
 }
 
 /// Refusals speak of the names that were written, and of the memory that was allowed.
