@@ -233,6 +233,35 @@ fn exponents_sum_to_the_divergence() {
     }
 }
 
+/// The same divergence in every state of a sweep of the small parameter itself, of negative values as well, and of all states
+/// those are stable that the values set one by one have stable.
+#[test]
+fn sweeps_of_the_small_parameter() {
+    let one = "x'' + x + eps*(x'/10 + x^3) = eps*cos((1 + eps)*t)";
+    let two = "x'' + x + eps*(x'/5 + x^3 + x^2*y) = eps*cos((1 + eps)*t)/2; \
+               y'' + 9*y + eps*(y'/10 + y + x*y^2) = 0";
+    for (equation, divergence) in [(one, 0.1), (two, 0.3)] {
+        for (values, positive) in [("1/50,1/20", 1.0), ("-1/20,-1/50", -1.0)] {
+            let sweep = Some(Axis::parse(&format!("eps={values}")).unwrap());
+            let amplitude = Some("3".parse().unwrap());
+            let question = Respond { amplitude, ..to_order(2) };
+            let swept = ask(equation, &[], &Respond { sweep, ..question.clone() });
+            for (states, value) in swept.states.iter().zip(values.split(',')) {
+                let small: Rational = value.parse().unwrap();
+                let stable = |list: &[State]| list.iter().map(|it| it.stable).collect::<Vec<_>>();
+                let alone = ask(equation, &[("eps", value)], &question);
+                assert_eq!(stable(&states.list), stable(&alone.states[0].list), "{value}");
+                assert_eq!(states.list[0].stable, Some(positive > 0.0), "{value}");
+                for state in &states.list {
+                    let sum: f64 = state.exponents.iter().map(|[re, _]| re.value).sum();
+                    let error = (sum + divergence * small.to_f64()).abs();
+                    assert!(error < 3.0 * small.to_f64().abs().powi(3), "{value}: {sum}");
+                }
+            }
+        }
+    }
+}
+
 /// Six resonances in time: N orders of the slow flow leave a remainder of order N + 1. Order 4 of all six, which costs half
 /// a minute, agrees as well.
 #[test]

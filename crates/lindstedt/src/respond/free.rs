@@ -90,12 +90,13 @@ impl Subject<'_> {
         let at = [pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]];
         let (delta, exponents) = free.drift(system, &at);
         let point = Point { at: at.to_vec(), exponents, change: None };
-        let scaled = |d: &Rational| Estimate { value: self.rate(&point) * delta * d.to_f64() };
+        let rate = self.rate(None);
+        let scaled = |d: &Rational| Estimate { value: rate * delta * d.to_f64() };
         Kept::Yes(State {
             amplitudes: amplitudes.to_vec(),
             phases: phases.to_vec(),
-            stable: self.is_stable(&point),
-            exponents: self.exponents(&point),
+            stable: self.is_stable(&point, rate),
+            exponents: self.exponents(&point, rate),
             drift: free.weights.iter().map(scaled).collect(),
             at: at.to_vec(),
         })

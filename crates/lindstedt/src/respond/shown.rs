@@ -30,12 +30,13 @@ impl Subject<'_> {
         let point = |point: &steady::Point| {
             let (value, w) = point.at.split_last().unwrap_or((&0.0, &[]));
             let phase = |w: &[f64]| Estimate { value: w[1].atan2(w[0]) };
+            let rate = self.rate(Some(*value));
             Point {
                 value: Estimate { value: self.shown_value(*value) },
                 amplitudes: self.amplitudes(w),
                 phases: w.chunks_exact(2).map(phase).collect(),
-                stable: self.is_stable(point),
-                exponents: self.exponents(point),
+                stable: self.is_stable(point, rate),
+                exponents: self.exponents(point, rate),
             }
         };
         let steady::Branch { points, closed, complete } = branch;
@@ -80,12 +81,13 @@ impl Subject<'_> {
         found: &Found,
     ) -> Option<States> {
         let mut list: Vec<State> = Vec::new();
+        let rate = self.rate(sample.map(Exact::to_f64));
         for zero in &found.zeros {
             let point = steady::state_at(system, &zero.middle());
             let polar: Option<Vec<_>> = zero.enclosure.chunks_exact(2).map(polar).collect();
             let (amplitudes, phases) = polar?.into_iter().unzip();
-            let stable = self.is_stable(&point);
-            let exponents = self.exponents(&point);
+            let stable = self.is_stable(&point, rate);
+            let exponents = self.exponents(&point, rate);
             let drift = Vec::new();
             list.push(State { amplitudes, phases, stable, exponents, drift, at: point.at });
         }

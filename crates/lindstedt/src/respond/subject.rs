@@ -330,18 +330,14 @@ impl<'a> Subject<'a> {
         w.chunks_exact(2).map(|w| Estimate { value: 2.0 * w[0].hypot(w[1]) }).collect()
     }
 
-    /// The small parameter at a point: rates per unit of t.
-    pub(super) fn rate(&self, point: &steady::Point) -> f64 {
-        match &self.small {
-            Some(small) => small.to_f64(),
-            None => point.at.last().copied().unwrap_or(1.0),
-        }
+    /// The small parameter at a value of the flow's parameter: rates per unit of t.
+    pub(super) fn rate(&self, value: Option<f64>) -> f64 {
+        self.small.as_ref().map(Rational::to_f64).or(value).unwrap_or(f64::NAN)
     }
 
     /// Exponents per unit of t.
-    pub(super) fn exponents(&self, point: &steady::Point) -> Vec<[Estimate; 2]> {
-        let small = self.rate(point);
-        let scaled = |x: f64| Estimate { value: small * x };
+    pub(super) fn exponents(&self, point: &steady::Point, rate: f64) -> Vec<[Estimate; 2]> {
+        let scaled = |x: f64| Estimate { value: rate * x };
         point.exponents.iter().map(|x| [scaled(x.re), scaled(x.im)]).collect()
     }
 
@@ -356,10 +352,8 @@ impl<'a> Subject<'a> {
     }
 
     /// As [`steady::Point::is_stable`] has it of w'/eps; of a negative small parameter the slow flow runs backwards.
-    pub(super) fn is_stable(&self, point: &steady::Point) -> Option<bool> {
-        let varies = self.small.is_none();
-        let backwards = varies && point.at.last().is_some_and(|small| *small < 0.0);
-        if !backwards && !self.runs_backwards() {
+    pub(super) fn is_stable(&self, point: &steady::Point, rate: f64) -> Option<bool> {
+        if rate > 0.0 {
             return point.is_stable();
         }
         let mut reversed = point.clone();
