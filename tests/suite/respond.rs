@@ -262,6 +262,31 @@ fn sweeps_of_the_small_parameter() {
     }
 }
 
+/// A frequency of 4.01 is nearer to 4 than the small terms move it: the orders do not fall, and the orbit in time has the amplitudes
+/// 2.2604 and 1.7038 (harmonic balance), near those of the frequency written as 4 and a detuning.
+#[test]
+fn a_near_resonance_is_said() {
+    let asked = |y: &str, order: usize| {
+        let equation = format!(
+            "x'' + x + eps*(x'/10 + x*y) = eps*cos((1 + eps/5)*t); y'' + {y} + eps*(x^2 + y'/10)"
+        );
+        let case = Oscillator::parse(&equation).unwrap().set("eps", "1/10").unwrap();
+        let question = Respond { amplitude: Some("6".parse().unwrap()), ..to_order(order) };
+        let answer = case.respond(&question, &Work::default()).unwrap();
+        let said = |words: &str| answer.remarks.iter().any(|it| it.0.contains(words));
+        let doubts =
+            [said("misses a resonance by 0.002494"), said("an order of the slow flow adds")];
+        (doubts, answer.value.states[0].list[0].amplitudes.clone())
+    };
+    assert_eq!([1, 2, 3].map(|order| asked("4.01*y", order).0[0]), [true; 3]);
+    assert_eq!([1, 3].map(|order| asked("4.01*y", order).0[1]), [false, true]);
+    let (doubts, amplitudes) = asked("4*y + eps*y/10", 2);
+    assert_eq!(doubts, [false, false]);
+    for (a, known) in amplitudes.iter().zip([2.2604, 1.7038]) {
+        assert!((a.decimal.parse::<f64>().unwrap() - known).abs() < 5e-3, "{}", a.decimal);
+    }
+}
+
 /// Six resonances in time: N orders of the slow flow leave a remainder of order N + 1. Order 4 of all six, which costs half
 /// a minute, agrees as well.
 #[test]

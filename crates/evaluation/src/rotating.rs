@@ -261,6 +261,33 @@ fn backbone(slow: &SlowFlow, turn: &[Rational], names: &[&str], order: usize) ->
     Flow::of_rows(vec![row], parameters)
 }
 
+/// sum_j nu_j |w_j| and, order by order, eps^n sum_j |f_{j,n} - i k_j sigma_n w_j| with every term taken by its modulus: what the
+/// orders add to w' at a state of these |w_j|, from above. The values are those of the symbols and of eps.
+#[must_use]
+pub fn order_sizes(slow: &SlowFlow, values: &[f64], moduli: &[f64], order: usize) -> Vec<f64> {
+    let unknowns = slow.unknowns();
+    let size = |terms: &Terms| -> f64 {
+        let sizes = terms.iter().map(|term| {
+            let scale = term.re.to_f64().hypot(term.im.to_f64());
+            let amplitudes = term.exponents[..2 * unknowns].chunks_exact(2).zip(moduli);
+            let scale = amplitudes.fold(scale, |p, (e, w)| p * w.powi(e[0] + e[1]));
+            let symbols = term.exponents.iter().skip(slow.first_symbol()).zip(values);
+            symbols.fold(scale, |product, (e, x)| product * x.abs().powi(*e))
+        });
+        sizes.sum()
+    };
+    let free = slow.system.frequencies.iter().zip(moduli).map(|(nu, w)| nu.to_f64() * w).sum();
+    let small = values.last().copied().unwrap_or(0.0).abs();
+    let power = |n: usize| small.powi(i32::try_from(n).unwrap_or(i32::MAX));
+    let flow = |n: usize| -> f64 { slow.flow.iter().filter_map(|f| f.get(n)).map(size).sum() };
+    let detuning = |n: usize| -> f64 {
+        let rates = slow.detuning.iter().filter_map(|sigma| sigma.get(n - 1));
+        rates.map(size).sum::<f64>() * moduli.iter().sum::<f64>()
+    };
+    let orders = (1..=order).map(|n| power(n) * (flow(n) + detuning(n)));
+    std::iter::once(free).chain(orders).collect()
+}
+
 /// The response to the forces at order zero of a single unknown and its rate at eta_l = 0, where the symbols have these
 /// values.
 #[must_use]

@@ -192,6 +192,12 @@ impl SlowFlow {
         if self.system.is_exact() { q.to_string() } else { format!("{:.6}", q.to_f64()) }
     }
 
+    /// k_1 nu_1 + ... + m_1 Omega_1 + ..., in words.
+    #[must_use]
+    pub fn harmonic(&self, near: &Nearest) -> String {
+        sum_of_harmonics(&near.harmonic, self.system.forces.len())
+    }
+
     /// The smallest divisor of all orders.
     #[must_use]
     pub fn nearest(&self) -> Option<&Nearest> {

@@ -144,6 +144,9 @@ pub struct State {
     /// Re w_1, Im w_1, ...
     #[serde(skip)]
     pub(crate) at: Vec<f64>,
+    /// The largest ratio of what an order adds to the slow flow at the state to what the order before adds.
+    #[serde(skip)]
+    pub(crate) growth: f64,
 }
 
 /// The response of the equation itself at a value of the parameter, integrated.

@@ -98,6 +98,7 @@ impl Subject<'_> {
             stable: self.is_stable(&point, rate),
             exponents: self.exponents(&point, rate),
             drift: free.weights.iter().map(scaled).collect(),
+            growth: self.growth(&self.values([None, None]), &at),
             at: at.to_vec(),
         })
     }

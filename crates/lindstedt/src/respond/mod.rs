@@ -5,6 +5,7 @@ mod free;
 mod frequency;
 mod shown;
 mod subject;
+mod validity;
 
 use crate::grid::Axis;
 use crate::refusal::Refused;
@@ -160,6 +161,7 @@ impl Oscillator {
         }
         remarks.extend(subject.enclosed());
         remarks.extend(missing(&value));
+        remarks.extend(subject.doubts(question, &value));
         let standing = match question.sweep {
             _ if work.stop.asked() => Standing::Stopped { done: value.branches.len() },
             None if undecided > 0 || (combination.is_some() && !counted) => Standing::Undecided,

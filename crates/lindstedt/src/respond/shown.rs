@@ -82,6 +82,7 @@ impl Subject<'_> {
     ) -> Option<States> {
         let mut list: Vec<State> = Vec::new();
         let rate = self.rate(sample.map(Exact::to_f64));
+        let values = self.values([sample, None]);
         for zero in &found.zeros {
             let point = steady::state_at(system, &zero.middle());
             let polar: Option<Vec<_>> = zero.enclosure.chunks_exact(2).map(polar).collect();
@@ -89,7 +90,8 @@ impl Subject<'_> {
             let stable = self.is_stable(&point, rate);
             let exponents = self.exponents(&point, rate);
             let drift = Vec::new();
-            list.push(State { amplitudes, phases, stable, exponents, drift, at: point.at });
+            let growth = self.growth(&values, &point.at);
+            list.push(State { amplitudes, phases, stable, exponents, drift, at: point.at, growth });
         }
         let size = |state: &State| state.at.iter().map(|x| x * x).sum::<f64>();
         list.sort_by(|a, b| size(b).total_cmp(&size(a)).then(b.at[0].total_cmp(&a.at[0])));

@@ -21,7 +21,7 @@ const BITS: u32 = 80;
 /// How far beside the range a backbone may begin, in widths of it.
 const BESIDE: f64 = 4.0;
 
-type Values = Vec<Option<Value>>;
+pub(super) type Values = Vec<Option<Value>>;
 
 pub(super) struct Subject<'a> {
     oscillator: &'a Oscillator,
@@ -318,10 +318,7 @@ impl<'a> Subject<'a> {
 
     /// w of a start state: z to leading order.
     pub(super) fn start(&self, [x, velocity]: [f64; 2]) -> [f64; 2] {
-        let number =
-            |value: &Option<Value>| value.as_ref().map_or(f64::NAN, |it| it.interval().middle());
-        let values: Vec<f64> = self.values([None, None]).iter().map(number).collect();
-        let [forced, rate] = forced_part(&self.slow, &values);
+        let [forced, rate] = forced_part(&self.slow, &doubles(&self.values([None, None])));
         let nu = self.slow.system.frequencies[0].to_f64();
         [0.5 * (x - forced), -0.5 * (velocity - rate) / nu]
     }
@@ -385,6 +382,12 @@ impl<'a> Subject<'a> {
         };
         points.filter(inside).map(shown).collect()
     }
+}
+
+pub(super) fn doubles(values: &Values) -> Vec<f64> {
+    let number =
+        |value: &Option<Value>| value.as_ref().map_or(f64::NAN, |it| it.interval().middle());
+    values.iter().map(number).collect()
 }
 
 /// A slow flow that was stopped at a lower order is that of other states.

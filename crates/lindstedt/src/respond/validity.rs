@@ -1,0 +1,53 @@
+//! Where the slow flow, whose states are proved, says little of the oscillator.
+
+use super::Respond;
+use super::answer::Response;
+use super::subject::{Subject, Values, doubles};
+use crate::Remark;
+use lindstedt_evaluation::rotating::order_sizes;
+
+impl Subject<'_> {
+    /// The largest ratio of what an order adds to the slow flow at a state to what the order before adds, of those
+    /// that add anything.
+    pub(super) fn growth(&self, values: &Values, at: &[f64]) -> f64 {
+        let moduli: Vec<f64> = at.chunks_exact(2).map(|w| w[0].hypot(w[1])).collect();
+        let mut sizes = order_sizes(&self.slow, &doubles(values), &moduli, self.order);
+        sizes.retain(|size| *size > 0.0);
+        sizes.windows(2).map(|pair| pair[1] / pair[0]).fold(0.0, f64::max)
+    }
+
+    /// Remarks on states at which the orders do not fall, and on a divisor that the small parameter exceeds.
+    pub(super) fn doubts(&self, question: &Respond, value: &Response) -> Vec<Remark> {
+        let growths = value.states.iter().flat_map(|states| &states.list).map(|it| it.growth);
+        let many = growths.clone().filter(|growth| *growth >= 1.0).count();
+        let worst = growths.fold(0.0, f64::max);
+        let orders = (many > 0).then(|| {
+            Remark(format!(
+                "at {many} of the states an order of the slow flow adds as much as the order before or more (up to {worst:.1} \
+                 times): the oscillator need not have a motion near these; a smaller small parameter or amplitude"
+            ))
+        });
+        let small = match (&self.small, &question.sweep) {
+            (Some(small), _) => small.to_f64().abs(),
+            (None, Some(axis)) => {
+                axis.values.iter().map(|value| value.to_f64().abs()).fold(0.0, f64::max)
+            }
+            (None, None) => return orders.into_iter().collect(),
+        };
+        let room = |order: usize| small.powi(i32::try_from(order.max(1)).unwrap_or(i32::MAX));
+        let nearest = self.slow.nearest.iter().filter(|near| near.order <= self.order);
+        let ratios = nearest.map(|near| (near.size.to_f64().abs() / room(near.order), near));
+        let missed = ratios.filter(|(ratio, _)| *ratio < 1.0).min_by(|a, b| a.0.total_cmp(&b.0));
+        let missed = missed.map(|(_, near)| {
+            Remark(format!(
+                "at order {} the harmonic {} of {} misses a resonance by {} of the square of its frequency, less than the small \
+                 terms move it: write the frequency as a resonant one and a detuning of order eps",
+                near.order,
+                self.slow.harmonic(near),
+                self.slow.coordinates()[near.unknown],
+                self.slow.size(&near.size),
+            ))
+        });
+        orders.into_iter().chain(missed).collect()
+    }
+}
