@@ -5,7 +5,7 @@
 use lindstedt::grid::Axis;
 use lindstedt::respond::{Response, State};
 use lindstedt::unstable::orbit::{Field, Kind, Request, Start, prove};
-use lindstedt::{Oscillator, Respond, Status, Verify, Work};
+use lindstedt::{Oscillator, Refusal, Respond, Status, Verify, Work};
 use rug::Rational;
 
 fn ask(equation: &str, values: &[(&str, &str)], question: &Respond) -> Response {
@@ -285,6 +285,50 @@ fn a_near_resonance_is_said() {
     for (a, known) in amplitudes.iter().zip([2.2604, 1.7038]) {
         assert!((a.decimal.parse::<f64>().unwrap() - known).abs() < 5e-3, "{}", a.decimal);
     }
+}
+
+/// The cusp of the primary resonance by its closed form (Nayfeh and Mook, chapter 4), whichever values the curves of folds are begun at.
+#[test]
+fn the_cusp_is_found_from_any_columns() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*F*cos((1 + eps*sigma)*t)";
+    for [sigma, force] in [["0,1/2,1", "1/10,1"], ["0..1:5", "0..1:5"], ["0,3", "1/10,1"]] {
+        let axis = |name, values| Some(Axis::parse(&format!("{name}={values}")).unwrap());
+        let (sweep, second) = (axis("sigma", sigma), axis("F", force));
+        let found = ask(equation, &[("eps", "1/10")], &Respond { sweep, second, ..to_order(1) });
+        let [cusp] = &found.cusps[..] else { panic!("{sigma}, {force}: {}", found.cusps.len()) };
+        let value = |k: usize| cusp.values[k].decimal.parse::<f64>().unwrap();
+        // mu = 1/10, alpha = 1: sigma = sqrt 3 mu, F^2 = 256 mu^3/(9 sqrt 3 alpha).
+        let root = 3f64.sqrt();
+        assert!((value(0) - 0.1 * root).abs() < 1e-12);
+        assert!((value(1) - (0.256 / (9.0 * root)).sqrt()).abs() < 1e-12);
+    }
+}
+
+/// Of two unknowns 1:2 the start at rest leads to the one state; pairs for each unknown, or the form is said.
+#[test]
+fn starts_of_several_unknowns() {
+    let equation = "x'' + x + eps*(x'/10 + x*y) = eps*cos((1 + eps/5)*t); y'' + 4*y + eps*(x^2 + y/10 + y'/10)";
+    let question = |start: &str| Respond {
+        amplitude: Some("6".parse().unwrap()),
+        start: Some(Respond::read_start(start).unwrap()),
+        ..to_order(2)
+    };
+    let leads = ask(equation, &[("eps", "1/10")], &question("0,0,0,0")).leads_to.unwrap();
+    assert_eq!((leads.fate, leads.state, leads.decided), ("steady", Some(0), true));
+    let case = Oscillator::parse(equation).unwrap().set("eps", "1/10").unwrap();
+    assert_eq!(case.respond(&question("0,0"), &Work::default()).unwrap_err().code(), "start");
+    assert!(Respond::read_start("1,2,3").is_err());
+}
+
+/// A start at the rim of a basin is one of which the leading order does not decide: in time it comes to rest (2400 periods), the slow
+/// flow to a state of amplitude 2.24.
+#[test]
+fn a_start_at_the_rim_is_undecided() {
+    let equation = "x'' + x + eps*(x^3 + x'/20) = 8*cos((3 + eps*s)*t)";
+    let start = Some(Respond::read_start("0,0").unwrap());
+    let question = Respond { start, ..to_order(3) };
+    let found = ask(equation, &[("eps", "1/20"), ("s", "5")], &question);
+    assert!(!found.leads_to.unwrap().decided);
 }
 
 /// Six resonances in time: N orders of the slow flow leave a remainder of order N + 1. Order 4 of all six, which costs half

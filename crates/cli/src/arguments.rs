@@ -345,8 +345,8 @@ pub struct RespondOptions {
     /// before: where it jumps.
     #[arg(long, requires = "sweep")]
     pub follow: bool,
-    /// x and x' at t = 0: which state does the motion go to?
-    #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
+    /// x and x' at t = 0, of several unknowns one pair after the other: which state does the motion go to?
+    #[arg(long, value_name = "X,V[,...]", allow_hyphen_values = true)]
     pub start: Option<String>,
     /// A figure (.svg) or a table (.csv) of the sweep; may be given twice.
     #[arg(long, value_name = "FILE")]

@@ -291,10 +291,11 @@ pub fn order_sizes(slow: &SlowFlow, values: &[f64], moduli: &[f64], order: usize
 /// The response to the forces at order zero of a single unknown and its rate at eta_l = 0, where the symbols have these
 /// values.
 #[must_use]
-pub fn forced_part(slow: &SlowFlow, values: &[f64]) -> [f64; 2] {
+pub fn forced_part(slow: &SlowFlow, unknown: usize, values: &[f64]) -> [f64; 2] {
     let unknowns = slow.unknowns();
     let mut sums = [0.0, 0.0];
-    let terms: &[_] = slow.solution.first().and_then(|x| x.first()).map_or(&[], Terms::as_slice);
+    let terms: &[_] =
+        slow.solution.get(unknown).and_then(|x| x.first()).map_or(&[], Terms::as_slice);
     for term in terms.iter().filter(|t| t.exponents[..2 * unknowns].iter().all(|e| *e == 0)) {
         let symbols = term.exponents.iter().skip(slow.first_symbol()).zip(values);
         let scale: f64 = symbols.fold(1.0, |product, (e, x)| product * x.powi(*e));

@@ -41,8 +41,8 @@ pub struct Respond {
     /// With a sweep: also the equation itself, integrated along the values upwards and downwards, each from the end of the
     /// one before.
     pub follow: bool,
-    /// x and x' at t = 0: where does the motion go?
-    pub start: Option<[Exact; 2]>,
+    /// x and x' of every unknown at t = 0: where does the motion go?
+    pub start: Option<Vec<[Exact; 2]>>,
 }
 
 impl Respond {
@@ -56,17 +56,20 @@ impl Respond {
         oscillator.axis(&format!("{text}{steps}"))
     }
 
-    /// Reads `X,V`.
+    /// Reads `X,V`, of several unknowns one pair after the other.
     ///
     /// # Errors
     /// [`Refused`] with the form that is expected, [`DerivationError::BadValue`](crate::DerivationError::BadValue).
-    pub fn read_start(text: &str) -> Result<[Exact; 2], Error> {
-        let Some((x, velocity)) = text.split_once(',') else {
-            let message = "a start state is X,V";
-            return Err(Refused::usage("start", message, "--start 1/2,0").into());
-        };
-        Ok([Exact::parse(x)?, Exact::parse(velocity)?])
+    pub fn read_start(text: &str) -> Result<Vec<[Exact; 2]>, Error> {
+        let parts: Vec<&str> = text.split(',').collect();
+        let (pairs, []) = parts.as_chunks::<2>() else { return Err(bad_start(1)) };
+        pairs.iter().map(|[x, velocity]| Ok([Exact::parse(x)?, Exact::parse(velocity)?])).collect()
     }
+}
+
+fn bad_start(unknowns: usize) -> Error {
+    let message = "a start state is X,V of every unknown";
+    Refused::usage("start", message, format!("--start 1/2,0{}", ",0,0".repeat(unknowns - 1))).into()
 }
 
 /// Steps through a range of which no number is given.
@@ -295,38 +298,51 @@ impl Subject<'_> {
     }
 
     /// Where a start state goes.
-    fn destination(&self, from: &[Exact; 2], response: &Response) -> Result<Destination, Error> {
-        if self.rotating.turns.len() != 1 || response.parameter.is_some() {
-            let message = "a start state is followed for one unknown and without a sweep";
-            return Err(Refused::usage("start", message, "lindstedt simulate").into());
+    fn destination(&self, from: &[[Exact; 2]], response: &Response) -> Result<Destination, Error> {
+        let refused = |message| Err(Refused::usage("start", message, "lindstedt simulate").into());
+        if response.parameter.is_some() {
+            return refused("a start state is followed without a sweep");
         }
         if self.has_phase() {
-            let message = "a start state is followed for a force without a phase at t = 0";
-            return Err(Refused::usage("start", message, "lindstedt simulate").into());
+            return refused("a start state is followed for a force without a phase at t = 0");
         }
         if self.runs_backwards() {
-            let message = "a start state is followed for a positive small parameter";
-            return Err(Refused::usage("start", message, "lindstedt simulate").into());
+            return refused("a start state is followed for a positive small parameter");
         }
-        let start = self.start(from.each_ref().map(Exact::to_f64));
+        if from.len() != self.rotating.turns.len() {
+            return Err(bad_start(self.rotating.turns.len()));
+        }
+        let from: Vec<_> = from.iter().map(|pair| pair.each_ref().map(Exact::to_f64)).collect();
+        let start = self.start(&from);
         let system = self.rotating.flow.system(&self.values([None, None]));
         let reach = response.amplitude_limit.value / 2.0;
-        let fate = settle(&system, &start, reach, LONG, &self.work.stop);
         let states = response.states.first().map_or(&[][..], |states| &states.list);
-        Ok(match fate {
-            Fate::Steady(w) => {
-                let near = |state: &State| {
-                    state.at.iter().zip(&w).all(|(a, b)| (a - b).abs() < 1e-6 * reach)
-                };
-                let amplitudes = self.amplitudes(&w);
-                let state = states.iter().position(near);
-                Destination { fate: "steady", state, amplitudes }
+        let goes = |start: &[f64]| {
+            let fate = settle(&system, start, reach, LONG, &self.work.stop);
+            match fate {
+                Fate::Steady(w) => {
+                    let near = |state: &State| {
+                        state.at.iter().zip(&w).all(|(a, b)| (a - b).abs() < 1e-6 * reach)
+                    };
+                    ("steady", states.iter().position(near), self.amplitudes(&w))
+                }
+                Fate::Moving(w) => ("moving", None, self.amplitudes(&w)),
+                Fate::Away => ("away", None, Vec::new()),
             }
-            Fate::Moving(w) => {
-                Destination { fate: "moving", state: None, amplitudes: self.amplitudes(&w) }
-            }
-            Fate::Away => Destination { fate: "away", state: None, amplitudes: Vec::new() },
-        })
+        };
+        let (fate, state, amplitudes) = goes(&start);
+        // The start is known but for terms of order eps.
+        let moved = self.rate(None) * start.iter().fold(0.0f64, |most, w| most.max(w.abs()));
+        let neighbours = (0..2 * start.len()).map(|k| {
+            let mut start = start.clone();
+            start[k / 2] += if k % 2 == 0 { moved } else { -moved };
+            start
+        });
+        let decided = neighbours.into_iter().all(|start| {
+            let (other, place, _) = goes(&start);
+            (other, place) == (fate, state)
+        });
+        Ok(Destination { fate, state, amplitudes, decided })
     }
 }
 

@@ -316,11 +316,20 @@ impl<'a> Subject<'a> {
         Ok((self.oscillator, Harmonics { turns, modes }))
     }
 
-    /// w of a start state: z to leading order.
-    pub(super) fn start(&self, [x, velocity]: [f64; 2]) -> [f64; 2] {
-        let [forced, rate] = forced_part(&self.slow, &doubles(&self.values([None, None])));
-        let nu = self.slow.system.frequencies[0].to_f64();
-        [0.5 * (x - forced), -0.5 * (velocity - rate) / nu]
+    /// w of the x_j, x_j' at t = 0: z to leading order.
+    pub(super) fn start(&self, from: &[[f64; 2]]) -> Vec<f64> {
+        let values = doubles(&self.values([None, None]));
+        let own = |j: usize| match self.slow.system.modes() {
+            None => from[j],
+            Some(rows) => rows[j].iter().zip(from).fold([0.0, 0.0], |[x, v], (share, pair)| {
+                [x + share.to_f64() * pair[0], v + share.to_f64() * pair[1]]
+            }),
+        };
+        let start = |(j, nu): (usize, &Rational)| {
+            let ([x, velocity], [forced, rate]) = (own(j), forced_part(&self.slow, j, &values));
+            [0.5 * (x - forced), -0.5 * (velocity - rate) / nu.to_f64()]
+        };
+        self.slow.system.frequencies.iter().enumerate().flat_map(start).collect()
     }
 
     pub(super) fn amplitudes(&self, w: &[f64]) -> Vec<Estimate> {

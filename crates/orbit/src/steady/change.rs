@@ -115,12 +115,26 @@ impl Flow {
                 found.push((change, zero));
             }
         };
-        let moved = |a: &[f64], b: &[f64]| [b[n] - a[n], b[n + 1] - a[n + 1]];
-        for three in folds.points.windows(3) {
-            let [a, b, c] = [&three[0].at, &three[1].at, &three[2].at];
-            let (before, after) = (moved(a, b), moved(b, c));
-            if before[0] * after[0] < 0.0 && before[1] * after[1] < 0.0 {
-                keep(Change::Cusp, b);
+        // In the plane of the parameters the curve runs back where it came from; a piece over the cusp itself hardly moves there.
+        let points = &folds.points;
+        let extent = [n, n + 1].map(|k| {
+            let values = points.iter().map(|point| point.at[k]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+            (high - low).max(f64::MIN_POSITIVE)
+        });
+        let moved =
+            |i: usize| [0, 1].map(|k| (points[i + 1].at[n + k] - points[i].at[n + k]) / extent[k]);
+        let back = |i: usize, j: usize| {
+            j + 1 < points.len() && {
+                let [a, b] = [moved(i), moved(j)];
+                a[0] * b[0] + a[1] * b[1] < 0.0
+            }
+        };
+        for i in 0..points.len().saturating_sub(2) {
+            if back(i, i + 1) || back(i, i + 2) {
+                keep(Change::Cusp, &points[i + 1].at);
             }
         }
         // The exponents without the one that is zero.

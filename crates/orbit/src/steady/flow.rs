@@ -119,7 +119,7 @@ impl Flow {
     }
 
     /// The polynomials whose zeros are the points of a change, in w, the free parameters, and v (and u; for a Hopf point
-    /// a, b, rate); l is the vector with l v = 1, l u = 0 (l a = 1, l b = 0). A crossing is a zero with beta = 0 of
+    /// a, b, rate); l is the vector with l v = 1, l u = 0 (l a = 1, l b = 0), but |v| = 1 of a fold. A crossing is a zero with beta = 0 of
     /// G + beta l, v J, v G_p, l v - 1 in w, p, v, beta (Moore 1980): at a zero with another beta the branches pass each other.
     #[must_use]
     pub fn conditions(
@@ -178,7 +178,9 @@ impl Flow {
                 rows.extend(across.map(|k| dot(&by(k), &v)));
             }
         }
-        rows.push(form(&v) + &whole(-1));
+        // A curve of folds is followed along v, which would turn until no l of its start fits.
+        let size = if change == Change::Fold { dot(&v, &v) } else { form(&v) };
+        rows.push(size + &whole(-1));
         Some(System::new(&rows, &self.given(values)))
     }
 }

@@ -166,7 +166,11 @@ fn plane(value: &Response, names: [&String; 2], absence: bool) -> Document {
     let rows: Vec<_> = corners(value).collect();
     let page = Document::default().words(words);
     if rows.is_empty() {
-        return if absence { page.words("no cusps, no Bogdanov-Takens points") } else { page };
+        return if absence {
+            page.words("no cusps, no Bogdanov-Takens points on them; a curve that passes none of the values searched is not among these")
+        } else {
+            page
+        };
     }
     page.table(rows.into_iter().fold(table, |table, (word, corner)| {
         let numbers = corner.values.iter().chain(&corner.amplitudes).map(Text::number);
@@ -280,6 +284,8 @@ impl Present for Answer<Response> {
                 ("moving", None) => "no steady state: the amplitudes still move".to_owned(),
                 _ => "away".to_owned(),
             };
+            let doubt = "; starts that differ by terms of order eps go elsewhere";
+            let words = words + if to.decided { "" } else { doubt };
             lines.push(("the start leads to".into(), words.into()));
         }
         let page = Document::titled(title(self)).lines(lines);
