@@ -116,49 +116,6 @@ fn primary() -> Expression {
     oscillator(0, 1, eps(damped_cubic() - p("F") * cos(q(1, 1))))
 }
 
-fn superharmonic() -> Expression {
-    oscillator(0, 1, eps(damped_cubic()) - p("F") * cos(q(1, 3)))
-}
-
-fn forced_van_der_pol() -> Expression {
-    let friction = (1 - x(0).pow(2)) * Expression::VELOCITY;
-    oscillator(0, 1, eps(p("s") * x(0) - friction - p("F") * cos(q(1, 1))))
-}
-
-/// Orders 1 to 3 of four oscillators; `tests/data/resonance` says where the numbers come from.
-#[test]
-fn reference_flows() {
-    let text = include_str!("../data/resonance/slow-flows.json");
-    let data: serde_json::Value = serde_json::from_str(text).unwrap();
-    let internal = [
-        oscillator(0, 1, eps(2 * x(0) * x(1))),
-        oscillator(1, 2, eps(p("s") * x(1) + x(0).pow(2))),
-    ];
-    let cases = [
-        ("primary", algebra(&[1], q(1, 1)), vec![primary()]),
-        ("superharmonic", algebra(&[1], q(1, 3)), vec![superharmonic()]),
-        ("internal_1_2", algebra(&[1, 2], q(0, 1)), internal.to_vec()),
-        ("van_der_pol_forced", algebra(&[1], q(1, 1)), vec![forced_van_der_pol()]),
-    ];
-    assert_eq!(data["cases"].as_object().unwrap().len(), cases.len());
-    let number = |v: &serde_json::Value| v.as_str().unwrap().parse::<Rational>().unwrap();
-    for (name, algebra, equations) in cases {
-        let found = derive(&algebra, &equations, 3, &[]);
-        for (order, unknowns) in data["cases"][name]["orders"].as_object().unwrap() {
-            for (j, list) in unknowns.as_array().unwrap().iter().enumerate() {
-                let term = |t: &serde_json::Value| {
-                    let powers = t["powers"].as_object().unwrap().iter();
-                    let powers = powers.map(|(k, n)| (k.clone(), n.as_i64().unwrap() as i32));
-                    (powers.collect::<Powers>(), [number(&t["re"]), number(&t["im"])])
-                };
-                let expected: Terms = list.as_array().unwrap().iter().map(term).collect();
-                let order: usize = order.parse().unwrap();
-                assert_eq!(terms(&algebra, &found.flow[j][order]), expected, "{name} {order}");
-            }
-        }
-    }
-}
-
 /// Nayfeh and Mook, Nonlinear Oscillations, chapters 4 to 6; the other cases of their table are among the
 /// reference flows.
 #[test]
@@ -374,20 +331,4 @@ fn volume_shrinks_as_the_damping_says() {
     };
     let mu = a.symbol("mu").unwrap();
     assert!(damped(mu.clone()) && !damped(a.neg(&mu)));
-}
-
-/// Orders 4, 8 and 12 of the primary resonance with four symbols, with the check.
-#[test]
-#[ignore = "a measurement"]
-fn time() {
-    for order in [4, 8, 12] {
-        let a = Amplitudes::new(Integers, &[q(1, 1)], &q(1, 1), &SYMBOLS[..4]).unwrap();
-        let graph = compile_system(&a, &[primary()], &Symbols(&a), order).unwrap();
-        let start = std::time::Instant::now();
-        let found = resonant(&a, &graph, order, &[], &mut |_| true).unwrap();
-        let derived = start.elapsed();
-        assert_eq!(check_flow(&a, &graph, &found), Ok(order));
-        let work = found.work.last().unwrap();
-        println!("order {order}: {derived:?}, checked {:?}, {work:?}", start.elapsed());
-    }
 }

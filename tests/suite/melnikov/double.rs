@@ -74,8 +74,7 @@ fn random_points() {
 #[test]
 #[ignore = "a million points against the ball path: a minute"]
 fn a_million_random_points() {
-    let worst = worst_error(1_000_000, 6);
-    println!("worst relative error of 10^6 points: {worst:e}");
+    assert!(worst_error(1_000_000, 6) < 4e-15);
 }
 
 fn hexadecimal(text: &str) -> f64 {
@@ -226,28 +225,4 @@ fn refusals() {
         .unwrap();
     assert!(table[0].is_nan() && table[1].is_nan());
     assert_eq!(table[3], base.threshold().unwrap().signed);
-}
-
-/// 2000 x 2000 points; run with `--ignored --nocapture` for the time.
-#[test]
-#[ignore = "a measurement of time"]
-fn surface_time() {
-    let base =
-        FastPoint { a: 1.0, b: 1.0, dry: 0.3, alpha: 0.3, beta: 0.3, omega: 2.0, belt_speed: 0.4 };
-    let axis = |low: f64, high: f64| -> Vec<f64> {
-        (0..2000).map(|i| low + (high - low) * f64::from(i) / 1999.0).collect()
-    };
-    let mut table = vec![0.0; 4_000_000];
-    for (rows, columns) in [
-        ((Axis::B, axis(0.5, 10.0)), (Axis::BeltSpeed, axis(0.0, 1.0))),
-        ((Axis::BeltSpeed, axis(0.0, 1.0)), (Axis::Omega, axis(0.1, 10.0))),
-    ] {
-        let mut best = f64::INFINITY;
-        for _ in 0..5 {
-            let start = std::time::Instant::now();
-            surface(&base, (rows.0, &rows.1), (columns.0, &columns.1), &mut table).unwrap();
-            best = best.min(start.elapsed().as_secs_f64());
-        }
-        println!("2000 x 2000 over {:?}, {:?}: {best:.4} s", rows.0, columns.0);
-    }
 }

@@ -1,22 +1,16 @@
 //! `lindstedt derive` with a free amplitude: formulas, numbers, warnings, refusals.
 #![allow(clippy::unwrap_used)]
 
+use crate::program;
 use serde_json::Value;
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn derive(arguments: &[&str]) -> Output {
-    let command = [&["derive"], arguments].concat();
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(command).output().unwrap()
-}
-
-fn text(arguments: &[&str]) -> String {
-    let output = derive(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    program::lindstedt(&[&["derive"], arguments].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
-    serde_json::from_str(&text(&[arguments, &["--format", "json"]].concat())).unwrap()
+    program::json(&[&["derive"], arguments].concat())
 }
 
 /// Every parameter that the flight between two impacts knows.
@@ -60,19 +54,8 @@ fn every_order_has_the_same_keys() {
 }
 
 #[test]
-fn symbolic_first_order() {
-    for format in ["text", "latex", "markdown"] {
-        insta::assert_snapshot!(
-            format!("vibro_impact_{format}"),
-            text(&["vibro-impact", "--order", "1", "--format", format])
-        );
-    }
-}
-
-#[test]
 fn van_der_pol_with_free_amplitude() {
     let free = ["van-der-pol", "--normalisation", "free", "--order", "4"];
-    insta::assert_snapshot!(text(&free));
     let found = json(&free);
     assert_eq!(found["normalisation"], "free-amplitude");
     let first = &found["series"]["amplitude_rate"][1];

@@ -1,20 +1,16 @@
 //! The book and the README say what is true: links resolve, every page is in the summary, every
 //! console block is run and compared, every Rust block is compiled and run here.
 
+use crate::program::{self, root, words};
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 mod guides;
 mod html;
 mod reference;
 
 type Outcome = Result<(), Box<dyn Error>>;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// The pages of the book below a folder.
 fn pages_below(folder: &Path, list: &mut Vec<PathBuf>) -> Outcome {
@@ -151,14 +147,6 @@ fn held_by_the_net() -> Result<BTreeMap<String, String>, Box<dyn Error>> {
     Ok(held)
 }
 
-/// The words of a command; what stands in quotes is one.
-fn words(command: &str) -> impl Iterator<Item = &str> {
-    command.split('"').enumerate().flat_map(|(n, part)| match n % 2 {
-        0 => part.split_whitespace().collect(),
-        _ => vec![part],
-    })
-}
-
 #[test]
 fn console_blocks_show_what_the_program_prints() -> Outcome {
     let mut wrong = Vec::new();
@@ -178,10 +166,7 @@ fn console_blocks_show_what_the_program_prints() -> Outcome {
                 continue;
             }
             if !outputs.contains_key(command) {
-                let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-                    .args(words(command))
-                    .current_dir(root())
-                    .output()?;
+                let output = program::command(&words(command)).current_dir(root()).output()?;
                 let mut shown = String::from_utf8_lossy(&output.stdout).into_owned();
                 shown.push_str(&String::from_utf8_lossy(&output.stderr));
                 outputs.insert(command.to_owned(), shown);

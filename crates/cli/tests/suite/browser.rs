@@ -4,19 +4,15 @@
 
 mod chromium;
 
+use crate::program::{command, root};
 use chromium::{Chromium, skipped};
 use serde_json::Value as Json;
 use std::collections::BTreeSet;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::OnceLock;
 
 type Outcome = Result<(), Box<dyn Error>>;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// The folder of `lindstedt paper --quick`, written once for all tests.
 pub fn folder() -> Result<&'static Path, Box<dyn Error>> {
@@ -27,10 +23,7 @@ pub fn folder() -> Result<&'static Path, Box<dyn Error>> {
 
 fn write_report() -> Result<PathBuf, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("paper");
-    let run = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-        .args(["paper", "--quick", "--quiet", "--out"])
-        .arg(&folder)
-        .output()?;
+    let run = command(&["paper", "--quick", "--quiet", "--out"]).arg(&folder).output()?;
     assert!(run.status.success(), "paper: {run:?}");
     let said = String::from_utf8(run.stdout)?;
     let page = folder.join("report.html");

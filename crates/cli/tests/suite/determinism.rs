@@ -1,7 +1,7 @@
 //! The same words whatever the number of threads and the language of the machine.
 #![cfg(unix)]
 
-use crate::outputs::Folder;
+use crate::program::Folder;
 
 #[test]
 fn threads_and_language_change_nothing() {

@@ -2,32 +2,13 @@
 //! the hint leads to, which has an answer.
 
 use super::fuzz::refusal;
+use crate::program::{command, root, words};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-/// The words of a line; what stands in quotation marks is one.
-fn words(line: &str) -> Vec<&str> {
-    let parts = line.split('"').enumerate().flat_map(|(n, part)| match n % 2 {
-        0 => part.split_whitespace().collect(),
-        _ => vec![part],
-    });
-    parts.collect()
-}
+use std::process::Output;
 
 fn run(line: &str) -> Output {
-    let arguments = words(line);
-    let program = env!("CARGO_BIN_EXE_lindstedt");
-    Command::new(program)
-        .args(arguments)
-        .args(["--quiet", "--format", "json"])
-        .current_dir(root())
-        .output()
-        .unwrap()
+    let arguments = [&words(line)[..], &["--quiet", "--format", "json"]].concat();
+    command(&arguments).current_dir(root()).output().unwrap()
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.

@@ -2,18 +2,18 @@
 //! refusals.
 #![allow(clippy::unwrap_used)]
 
+use crate::program::{self, Folder, example};
 use serde_json::Value;
-use std::process::{Command, Output};
+use std::process::Output;
+
+const EVALUATE: &[&str] = &["evaluate", "--quiet"];
 
 fn run(arguments: &[&str]) -> Output {
-    let command = [&["evaluate", "--quiet"], arguments].concat();
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(command).output().unwrap()
+    program::lindstedt(&[EVALUATE, arguments].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
-    let output = run(&[arguments, &["--format", "json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&[EVALUATE, arguments].concat())
 }
 
 #[test]
@@ -62,18 +62,14 @@ fn solution_as_table_figure_and_code() {
     // mpmath 1.3.0, odefun.
     let x: f64 = values[1]["x"]["decimal"].as_str().unwrap().parse().unwrap();
     assert!((x - 0.233_691_791_143_141).abs() < 1e-11);
-    let folder = std::env::temp_dir();
-    let name =
-        |kind: &str| folder.join(format!("lindstedt-evaluate-{}.{kind}", std::process::id()));
-    let (svg, csv) = (name("svg"), name("csv"));
-    let plots = ["--plot", svg.to_str().unwrap(), "--plot", csv.to_str().unwrap()];
+    let folder = Folder::new("plots");
+    let (svg, csv) = (folder.path("x.svg"), folder.path("x.csv"));
+    let plots = ["--plot", &svg, "--plot", &csv];
     let request = ["duffing", "--order", "8", "--times", "0..5:20"];
     assert!(run(&[&request[..], &plots[..]].concat()).status.success());
-    let (drawn, table) =
-        (std::fs::read_to_string(&svg).unwrap(), std::fs::read_to_string(&csv).unwrap());
+    let (drawn, table) = (folder.text("x.svg"), folder.text("x.csv"));
     assert!(drawn.contains("<polyline") && drawn.trim_end().ends_with("</svg>"));
     assert_eq!(table.lines().count(), 21);
-    let _ = (std::fs::remove_file(svg), std::fs::remove_file(csv));
     let code = |language: &str| {
         let arguments = ["duffing", "--order", "16", "--code", language, "--harmonics", "9"];
         String::from_utf8(run(&arguments).stdout).unwrap()
@@ -128,18 +124,6 @@ fn every_format_and_every_refusal() {
     }
 }
 
-fn example(name: &str) -> String {
-    format!("{}/../../docs/examples/{name}", env!("CARGO_MANIFEST_DIR"))
-}
-
-/// A file in the folder for temporary files.
-fn file(name: &str, text: &str) -> String {
-    let name = format!("lindstedt-evaluate-{}-{name}.toml", std::process::id());
-    let path = std::env::temp_dir().join(name);
-    std::fs::write(&path, text).unwrap();
-    path.to_str().unwrap().to_owned()
-}
-
 /// The printed file of a built-in problem gives the identical result, x(t) included.
 #[test]
 fn a_printed_file_is_the_built_in_problem() {
@@ -150,12 +134,8 @@ fn a_printed_file_is_the_built_in_problem() {
         ("duffing", "eps=1/3"),
         ("van-der-pol", "eps=1/2"),
     ] {
-        let shown = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-            .args(["problems", "--show", name])
-            .output()
-            .unwrap();
-        let path =
-            file(&format!("{name}-{}", set.len()), &String::from_utf8(shown.stdout).unwrap());
+        let folder = Folder::new("printed");
+        let path = folder.file("printed.toml", program::text(&["problems", "--show", name]));
         let run = |problem: &str| {
             // A limit cycle is a series in eps^2.
             let order = if name == "van-der-pol" { "12" } else { "8" };
@@ -165,7 +145,6 @@ fn a_printed_file_is_the_built_in_problem() {
             found
         };
         assert_eq!(run(name), run(&path), "{name} {set}");
-        let _ = std::fs::remove_file(path);
     }
     // The same equation under other names.
     let built_in = json(&["power-law", "--set", "delta=1/2", "--set", "amplitude=2"]);
@@ -211,12 +190,14 @@ fn all_examples() {
     assert_eq!(output.status.code(), Some(3));
     assert!(String::from_utf8_lossy(&output.stderr).contains("not smooth"));
     let quartic = "name = 'a'\nequation = \"x'' + x + eps*x^3 = 0\"\n";
-    let path = file("initial", &format!("{quartic}[initial]\nx = '1/2'\nvelocity = '0'\n"));
+    let folder = Folder::new("initial");
+    let moving = |v| format!("{quartic}[initial]\nx = '1/2'\nvelocity = '{v}'\n");
+    let path = folder.file("initial.toml", moving(0));
     let found = json(&[&path, "--set", "eps=4"]);
     assert_eq!(found["at"]["amplitude"], "1/2");
     // 2 pi/agm(sqrt 2, sqrt(3/2)), mpmath 1.3.0: the period of rho = 1.
     assert_eq!(found["exact_period"]["decimal"], "4.76802202910246080630451847006");
-    let path = file("initial", &format!("{quartic}[initial]\nx = '1/2'\nvelocity = '1'\n"));
+    let path = folder.file("initial.toml", moving(1));
     assert_eq!(run(&[&path, "--set", "eps=4"]).status.code(), Some(3));
     let _ = std::fs::remove_file(path);
 }
@@ -303,18 +284,15 @@ fn averaged_motions() {
         let output = run(&[&arguments[..], &["--format", format]].concat());
         assert!(output.status.success() && output.stdout.len() > 500, "{format}");
     }
-    let folder = std::env::temp_dir();
-    let name =
-        |kind: &str| folder.join(format!("lindstedt-averaged-{}.{kind}", std::process::id()));
-    let (svg, csv) = (name("svg"), name("csv"));
-    let plots = ["--plot", svg.to_str().unwrap(), "--plot", csv.to_str().unwrap()];
+    let folder = Folder::new("averaged");
+    let (svg, csv) = (folder.path("x.svg"), folder.path("x.csv"));
+    let plots = ["--plot", &svg, "--plot", &csv];
     assert!(run(&[&free[..], &["--start", "1,0"], &plots[..]].concat()).status.success());
     let drawn = std::fs::read_to_string(&svg).unwrap();
     assert_eq!(drawn.matches("stroke=\"#969696\"").count(), 2, "{drawn}");
     let table = std::fs::read_to_string(&csv).unwrap();
     assert!(table.starts_with("t,a,a_error,psi,psi_error,x,x_error\n0.0,1.0,"));
     assert_eq!(table.lines().count(), 130);
-    let _ = (std::fs::remove_file(svg), std::fs::remove_file(csv));
     // A series whose terms grow has no estimate, and says so.
     let wild = ["van-der-pol", "--normalisation", "free", "--set", "eps=20", "--start", "2,0"];
     let found = json(&[&wild[..], &["--times", "0..1:2"]].concat());
@@ -416,7 +394,8 @@ fn averaged_without_integration() {
 /// x(0) = 1 exactly, and the fifth harmonic, -1.3e-7, is left out.
 #[test]
 fn generated_code_deviates_as_it_says() {
-    let path = file("deviation", "name = 'a'\nequation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\n");
+    let folder = Folder::new("deviation");
+    let path = folder.problem("x'' + x + eps*(x^2 + x'^2) = 0", &[], "");
     let arguments = ["--set", "eps=1/5", "--code", "python", "--harmonics", "6", "--digits", "10"];
     let output = run(&[&[path.as_str()], &arguments[..]].concat());
     let code = String::from_utf8(output.stdout).unwrap();
@@ -429,7 +408,6 @@ fn generated_code_deviates_as_it_says() {
     assert!(stated < 2e-7, "{stated}");
     assert!((start - 1.0).abs() <= stated, "{start} {stated}");
     assert!((start - 1.0).abs() > 1e-8, "nothing is left out here: {start}");
-    let _ = std::fs::remove_file(path);
 }
 
 /// The flight is linear at every order: where not one digit of the growth rate is known, that is said.
@@ -461,11 +439,11 @@ fn a_growth_rate_without_a_digit_is_said_to_have_none() {
 /// eps^2 a^2, and the sixth does.
 #[test]
 fn orders_that_vanish_are_no_error_of_zero() {
-    let path = std::env::temp_dir().join(format!("lindstedt-{}-vanish.toml", std::process::id()));
-    let file = "name = \"vanish\"\nequation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\ncondition = \"free-amplitude\"\n";
-    std::fs::write(&path, file).unwrap();
+    let folder = Folder::new("vanish");
+    let condition = "condition = \"free-amplitude\"";
+    let path = folder.problem("x'' + x + eps*(x^2 + x'^2) = 0", &[], condition);
     let rate = |order: &str| {
-        let arguments = [path.to_str().unwrap(), "--order", order, "--start", "1,0"];
+        let arguments = [&path, "--order", order, "--start", "1,0"];
         let found = json(&[&arguments[..], &["--set", "eps=1/10", "--digits", "20"]].concat());
         let number = &found["rates"]["phase_number"];
         let text = |key: &str| number[key].as_str().unwrap().parse::<f64>().unwrap();

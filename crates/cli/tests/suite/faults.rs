@@ -2,7 +2,7 @@
 //! finished work that is lost. A few here, two hundred of each by `--ignored`.
 #![cfg(unix)]
 
-use crate::outputs::Folder;
+use crate::program::Folder;
 use std::io::Read;
 use std::process::Stdio;
 use std::time::Instant;

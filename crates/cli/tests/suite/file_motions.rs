@@ -2,64 +2,7 @@
 //! follow, sweeps that are resumed, inelastic walls, exponents of motions that are no chaos.
 #![allow(clippy::unwrap_used)]
 
-use serde_json::Value;
-use std::path::PathBuf;
-use std::process::{Command, Output};
-
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).arg("--quiet").output().unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = lindstedt(&[arguments, &["--format", "json"]].concat());
-    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stdout));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn text(arguments: &[&str]) -> String {
-    let output = lindstedt(arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?} {error}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-fn refusal(arguments: &[&str]) -> (Option<i32>, String) {
-    let output = lindstedt(arguments);
-    (output.status.code(), String::from_utf8(output.stderr).unwrap())
-}
-
-fn float(number: &Value) -> f64 {
-    number["decimal"].as_str().unwrap().parse().unwrap()
-}
-
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let name = format!("lindstedt-motions-{}-{name}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-
-    /// An equation with parameters `name = value` and what else the file says.
-    fn file(&self, equation: &str, parameters: &[(&str, &str)], rest: &str) -> String {
-        let path = self.0.join("problem.toml");
-        let mut text =
-            format!("name = \"problem\"\nequation = \"{equation}\"\n{rest}\n[parameters]\n");
-        for (name, value) in parameters {
-            text += &format!("{name} = {{ value = \"{value}\" }}\n");
-        }
-        std::fs::write(&path, text).unwrap();
-        path.display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use crate::program::{Folder, float, json, lindstedt, refusal, text};
 
 /// x'' + x'/5 + x = cos(w t): |H| = 1/sqrt((1 - w^2)^2 + w^2/25) at every phase; the file of a sweep
 /// belongs to one equation.
@@ -71,7 +14,7 @@ fn a_resumed_sweep_belongs_to_one_equation() {
     let sweep =
         ["--sweep", "w=1/2..1:2", "--section", "velocity", "--skip", "300", "--periods", "2"];
     let run = |damping: &str, resume: &str| {
-        let path = folder.file(&format!("x'' + x + {damping}*x' = cos(w*t)"), &[("w", "1")], "");
+        let path = folder.problem(&format!("x'' + x + {damping}*x' = cos(w*t)"), &[("w", "1")], "");
         let all = [&["simulate", &path], &sweep[..], &["--resume", resume]].concat();
         lindstedt(&all)
     };
@@ -92,7 +35,7 @@ fn forces_with_a_phase_have_their_period() {
     let frequencies = [("w1", "1/4"), ("w2", "1/4"), ("p", "1")];
     for force in ["cos(t/2 + 1)", "cos((w1 + w2)*t + p)", "sin(w1*(t + 4*p) + w2*t + pi/2)"] {
         let equation = format!("x'' + x + x'/5 = {force}").replace("pi/2", "1.5");
-        let path = folder.file(&equation, &frequencies, "");
+        let path = folder.problem(&equation, &frequencies, "");
         let found = json(&["simulate", &path, "--section", "stroboscopic", "--periods", "2"]);
         let points = found["section"]["points"].as_array().unwrap();
         let time = points[0][0].as_f64().unwrap();
@@ -104,7 +47,7 @@ fn forces_with_a_phase_have_their_period() {
         ("cos(w1*t) + cos(w2*t)", false),
         ("cos(w1*t + 1)", false),
     ] {
-        let path = folder.file(&format!("x'' + x + eps*x' = {force}"), &frequencies, "");
+        let path = folder.problem(&format!("x'' + x + eps*x' = {force}"), &frequencies, "");
         let output = lindstedt(&["derive", &path, "--order", "1"]);
         assert!(output.status.success());
         let page = String::from_utf8(output.stdout).unwrap();
@@ -112,7 +55,7 @@ fn forces_with_a_phase_have_their_period() {
         let shown = text(&["problems", "--show", &path]);
         assert_eq!(shown.contains("averaging (KBM)     applies"), taken, "{shown}");
     }
-    let path = folder.file("x'' + x + x'/5 = cos((w1 + w2)*t)", &frequencies, "");
+    let path = folder.problem("x'' + x + x'/5 = cos((w1 + w2)*t)", &frequencies, "");
     let (code, error) = refusal(&["simulate", &path, "--set", "w1=-1"]);
     assert!(code == Some(3) && error.contains("(w1 + w2), is outside its domain"), "{error}");
 }
@@ -128,7 +71,7 @@ fn masses_are_averaged() {
     let typed = "2*x'' + eps*x' + 8*x + eps*x^3 = cos(5*t)";
     let factored = "x'' + (1/m)*(eps*x' + k*x + eps*x^3 - cos(5*t)) = 0";
     let derived = |equation: &str| {
-        let path = folder.file(equation, &all, "");
+        let path = folder.problem(equation, &all, "");
         let found = text(&["derive", &path, "--order", "2"]);
         let start = found.find("  u_0").unwrap();
         assert!(found.contains("A_1 = -1/4*a\n"), "{found}");
@@ -138,7 +81,7 @@ fn masses_are_averaged() {
     assert_eq!(derived(equation), expected);
     assert_eq!(derived(factored), expected);
     // No rational frequency: in balls.
-    let path = folder.file(equation, &all, "");
+    let path = folder.problem(equation, &all, "");
     let judged = text(&["verify", &path, "--set", "m=3", "--order", "1"]);
     assert!(judged.contains("agrees: observed order"), "{judged}");
     let spring = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/impact-spring.toml");
@@ -149,7 +92,7 @@ fn masses_are_averaged() {
 #[test]
 fn parameters_that_follow() {
     let folder = Folder::new("follows");
-    let path = folder.file("x'' + x + eps*b*x^3 = 0", &[("a", "1/2")], "");
+    let path = folder.problem("x'' + x + eps*b*x^3 = 0", &[("a", "1/2")], "");
     let file = std::fs::read_to_string(&path).unwrap() + "b = { follows = \"2*a\" }\n";
     std::fs::write(&path, file).unwrap();
     let sets = ["--set", "eps=1/2", "--digits", "12"];
@@ -159,7 +102,7 @@ fn parameters_that_follow() {
     let other = json(&[&["evaluate", &path, "--set", "a=1"], &sets[..]].concat());
     assert_ne!(other["period"]["decimal"], duffing["period"]["decimal"]);
     // c = 2 z is as small as z.
-    let path = folder.file("x'' + x + c*x' = 0", &[("z", "1")], "orders = { z = 1 }");
+    let path = folder.problem("x'' + x + c*x' = 0", &[("z", "1")], "orders = { z = 1 }");
     let file = std::fs::read_to_string(&path).unwrap() + "c = { follows = \"2*z\" }\n";
     std::fs::write(&path, file).unwrap();
     let asked = ["derive", &path, "--normalisation", "free", "--order", "1", "--set", "z=1"];
@@ -192,7 +135,7 @@ fn inelastic_impacts_are_impacts() {
 #[test]
 fn growth_is_not_chaos() {
     let folder = Folder::new("growth");
-    let cycle = folder.file("x'' + x + (x^2 - 1)*x' = 0", &[], "");
+    let cycle = folder.problem("x'' + x + (x^2 - 1)*x' = 0", &[], "");
     for (periods, skip) in [("200", "20"), ("200", "500")] {
         let found = json(&["simulate", &cycle, "--lyapunov", "--periods", periods, "--skip", skip]);
         let error: f64 = found["lyapunov"]["error"].as_str().unwrap().parse().unwrap();
@@ -200,18 +143,18 @@ fn growth_is_not_chaos() {
         assert!(value.abs() <= error && error < 0.05, "{periods} {skip}: {value} +- {error}");
     }
     for equation in ["x'' - x'/10 + x = 0", "x'' + (1 + cos(2*t)/2)*x + x'/5 = 1"] {
-        let path = folder.file(equation, &[], "");
+        let path = folder.problem(equation, &[], "");
         let run = ["--lyapunov", "--zero-one", "--periods", "300", "--skip", "10"];
         let found = json(&[&["simulate", &path], &run[..]].concat());
         let verdict = found["verdict"].as_str().unwrap();
         assert!(verdict.starts_with("a linear equation is not chaotic"), "{verdict}");
         assert!(!verdict.contains("test chaotic"), "{verdict}");
     }
-    let path = folder.file("x'' + x = 0", &[], "");
+    let path = folder.problem("x'' + x = 0", &[], "");
     let still = json(&["simulate", &path, "--lyapunov", "--periods", "300", "--skip", "10"]);
     assert!(still["verdict"].as_str().unwrap().starts_with("no exponential growth"), "{still}");
     // Beyond the largest double, not at a pole.
-    let path = folder.file("x'' - x + x'/5 = 0", &[], "");
+    let path = folder.problem("x'' - x + x'/5 = 0", &[], "");
     let (code, error) = refusal(&["simulate", &path, "--lyapunov"]);
     assert!(code == Some(3) && error.contains("not finite"), "{error}");
 }
@@ -221,7 +164,7 @@ fn growth_is_not_chaos() {
 fn cycles_of_second_order() {
     let folder = Folder::new("cycles");
     for rest in ["", "eps*x^2 + ", "eps*x*x' + "] {
-        let path = folder.file(&format!("x'' + x + {rest}eps^2*(x^2 - 1)*x' = 0"), &[], "");
+        let path = folder.problem(&format!("x'' + x + {rest}eps^2*(x^2 - 1)*x' = 0"), &[], "");
         let (code, error) = refusal(&["derive", &path]);
         assert!(code == Some(3) && error.contains("of order 1 vanishes"), "{error}");
         let found = text(&["derive", &path, "--normalisation", "free", "--order", "2"]);
@@ -229,7 +172,7 @@ fn cycles_of_second_order() {
     }
     // v dv/(1 + eps v) = -g dx: all orbits are closed.
     let centre = "x'' + (x + eps*x^2) + eps*(x + eps*x^2)*x' = 0";
-    let path = folder.file(centre, &[], "condition = \"initial-amplitude\"");
+    let path = folder.problem(centre, &[], "condition = \"initial-amplitude\"");
     assert!(text(&["derive", &path, "--order", "4"]).contains("at orders 0 to 4"));
 }
 
@@ -273,7 +216,7 @@ fn a_stiffness_named_k() {
         let equation = format!("m*x'' + c*x' + {k}*x = F*cos(Omega*t)");
         let wall = "[impact]\nposition = '1/10'\ncrossing = 'rising'\nrestitution = '7/10'";
         let all = [("m", "2"), ("c", "0.4"), (k, "8"), ("F", "3"), ("Omega", "5")];
-        folder.file(&equation, &all, wall)
+        folder.problem(&equation, &all, wall)
     };
     let of = |k: &str, periods: &str| {
         let set = format!("{periods}=2");
@@ -295,20 +238,20 @@ fn a_stiffness_named_k() {
 #[test]
 fn preload_and_hertz() {
     let folder = Folder::new("preload");
-    let path = folder.file("x'' + x + eps*x^3 = F", &[("F", "1")], "");
+    let path = folder.problem("x'' + x + eps*x^3 = F", &[("F", "1")], "");
     let shown = text(&["problems", "--show", &path]);
     assert!(shown.contains("averaging (KBM)     applies"), "{shown}");
     let (code, error) = refusal(&["derive", &path]);
     assert!(code == Some(3) && error.contains("--normalisation free"), "{error}");
-    let path_pi = folder.file("x'' + x + eps*x^3 = cos(pi*t)", &[], "");
+    let path_pi = folder.problem("x'' + x + eps*x^3 = cos(pi*t)", &[], "");
     // The response to a force cos(pi t) at order zero is -cos(pi t)/(pi^2 - 1), in balls.
     assert!(text(&["derive", &path_pi, "--order", "1"]).contains("-0.1127445999"));
-    let path = folder.file("x'' + x + eps*x^3 = F", &[("F", "1")], "");
+    let path = folder.problem("x'' + x + eps*x^3 = F", &[("F", "1")], "");
     // (1 + a cos psi)^3: B_1 = 3/2 + 3 a^2/8.
     let asked = ["derive", &path, "--normalisation", "free", "--order", "1", "--set", "F=1"];
     let found = text(&asked);
     assert!(found.contains("B_1 = 3/2 + 3/8*a^2"), "{found}");
-    let path = folder.file("x'' + 4*x + eps*x' = cos(Omega*t)", &[("f", "5/2")], "");
+    let path = folder.problem("x'' + 4*x + eps*x' = cos(Omega*t)", &[("f", "5/2")], "");
     let file = std::fs::read_to_string(&path).unwrap() + "Omega = { follows = \"2*pi*f\" }\n";
     std::fs::write(&path, file).unwrap();
     for verb in ["derive", "evaluate", "verify"] {

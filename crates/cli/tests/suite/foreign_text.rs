@@ -2,9 +2,9 @@
 //! Markdown, nothing that steers a terminal.
 
 use super::fuzz::Generator;
+use crate::program::lindstedt;
 use lindstedt::{Oscillator, Refusal, Work};
 use lindstedt_report::{Format, Present, json};
-use std::process::Command;
 
 /// What somebody might write to get in.
 const PAYLOADS: [&str; 16] = [
@@ -163,11 +163,7 @@ fn any_text_is_data() {
 fn messages_are_harmless() {
     for argument in ["\u{1b}[2J", "\u{1b}]0;x\u{7}.toml", "x'' + \u{9b}31m = 0", "a\u{202e}b"] {
         for format in ["text", "json"] {
-            let program = env!("CARGO_BIN_EXE_lindstedt");
-            let output = Command::new(program)
-                .args(["derive", argument, "--format", format])
-                .output()
-                .unwrap();
+            let output = lindstedt(&["derive", argument, "--format", format]);
             let said = [output.stdout, output.stderr].concat();
             let said = String::from_utf8(said).unwrap();
             assert_eq!(breach("text", &said), None, "{argument:?} {said:?}");

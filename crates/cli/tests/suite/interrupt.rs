@@ -2,7 +2,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::outputs::Folder;
+use crate::program::Folder;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 

@@ -1,7 +1,7 @@
 //! The file of a sweep: what was changed in it is found, named and computed again.
 #![cfg(unix)]
 
-use crate::outputs::Folder;
+use crate::program::Folder;
 use std::fs;
 
 const SWEEP: [&str; 10] = [

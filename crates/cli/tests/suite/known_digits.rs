@@ -1,33 +1,8 @@
 //! Only digits that are known, and only claims that hold.
 #![allow(clippy::unwrap_used)]
 
+use crate::program::{Folder, json, lindstedt, refusal, root, text};
 use serde_json::Value;
-use std::process::{Command, Output};
-
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
-}
-
-fn text(arguments: &[&str]) -> String {
-    String::from_utf8(lindstedt(arguments).stdout).unwrap()
-}
-
-/// Standard error and the exit code.
-fn refusal(arguments: &[&str]) -> (String, Option<i32>) {
-    let output = lindstedt(arguments);
-    (String::from_utf8(output.stderr).unwrap(), output.status.code())
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = lindstedt(&[arguments, &["--format", "json"]].concat());
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn file(name: &str, contents: &str) -> String {
-    let path = std::env::temp_dir().join(format!("lindstedt-{}-{name}.toml", std::process::id()));
-    std::fs::write(&path, contents).unwrap();
-    path.to_string_lossy().into_owned()
-}
 
 /// Branch points at rho = -1.306238 +- 0.690194 i, by the zeros of the discriminant of quadratic
 /// approximants of order 80.
@@ -83,9 +58,10 @@ fn the_exponent_of_lyapunov_has_one_error() {
 /// x'' + x + eps x^2 = 0 from (-2.9, 0), eps = 0.6: beyond the saddle x = -1/eps.
 #[test]
 fn an_escape_is_called_one() {
-    let path = file("escape", "name = \"quadratic\"\nequation = \"x'' + x + eps*x^2 = 0\"\n");
+    let folder = Folder::new("escape");
+    let path = folder.problem("x'' + x + eps*x^2 = 0", &[], "");
     let run = ["simulate", &path, "--set", "eps=0.6", "--state", "-2.9,0", "--until", "30"];
-    let (error, code) = refusal(&run);
+    let (code, error) = refusal(&run);
     assert!(
         error.contains("the motion escapes to infinity near t = ") && code == Some(3),
         "{error}"
@@ -94,11 +70,13 @@ fn an_escape_is_called_one() {
 
 #[test]
 fn refusals_name_the_reason() {
-    let (error, code) = refusal(&["verify", "duffing", "--small", "10,5,2"]);
+    let (code, error) = refusal(&["verify", "duffing", "--small", "10,5,2"]);
     assert!(error.contains("omega^2 of order 4 is -") && code == Some(3), "{error}");
-    let (error, _) = refusal(&["simulate", "vibro-impact", "--state", "0,0"]);
+    let (_, error) = refusal(&["simulate", "vibro-impact", "--state", "0,0"]);
     assert!(error.contains("behind the wall at x = -0.2"), "{error}");
-    let found = json(&["evaluate", "pendulum", "--set", "amplitude=3", "--order", "5"]);
+    let rough =
+        ["evaluate", "pendulum", "--set", "amplitude=3", "--order", "5", "--format", "json"];
+    let found: Value = serde_json::from_slice(&lindstedt(&rough).stdout).unwrap();
     assert!(found["period"]["decimal"].is_null(), "{found}");
 }
 
@@ -133,17 +111,15 @@ fn digits_decide_near_a_flip() {
 
 #[test]
 fn parameters_that_occur_nowhere_are_named() {
-    let equation = "name = \"unused\"\nequation = \"x'' + x + eps*c*x^3 = 0\"\n[parameters]\n";
-    let path =
-        file("unused", &format!("{equation}c = {{ value = \"1\" }}\nk = {{ value = \"2\" }}\n"));
-    let (error, _) = refusal(&["problems", "--show", &path]);
+    let folder = Folder::new("unused");
+    let path = folder.problem("x'' + x + eps*c*x^3 = 0", &[("c", "1"), ("k", "2")], "");
+    let (_, error) = refusal(&["problems", "--show", &path]);
     assert!(error.contains("parameter k is declared and occurs nowhere"), "{error}");
     assert!(!error.contains("parameter c "), "{error}");
-    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples");
-    for entry in std::fs::read_dir(examples).unwrap() {
+    for entry in std::fs::read_dir(root().join("docs/examples")).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|end| end == "toml") {
-            let (error, _) = refusal(&["problems", "--show", &path.to_string_lossy()]);
+            let (_, error) = refusal(&["problems", "--show", &path.to_string_lossy()]);
             assert!(!error.contains("occurs nowhere"), "{}: {error}", path.display());
         }
     }

@@ -18,6 +18,7 @@ mod known_digits;
 mod one_path;
 mod outputs;
 mod problem_files;
+mod program;
 mod proof;
 mod simulate;
 mod simulate_files;

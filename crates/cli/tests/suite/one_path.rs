@@ -1,6 +1,7 @@
 //! The same question to a built-in name, to its own file, and to the library with either: one answer, what a
 //! clock says apart.
 
+use crate::program::{self, Folder, refusal};
 use lindstedt::evaluate::averaged::{AveragedMotion, Start};
 use lindstedt::evaluate::{Language, Times};
 use lindstedt::grid::Axis;
@@ -15,7 +16,6 @@ use lindstedt::{
 };
 use serde::Serialize;
 use serde_json::Value;
-use std::process::Command;
 
 /// Keys that hold times, or follow from them.
 const TIMED: [&str; 4] = ["seconds", "seconds_again", "pareto", "recommendation"];
@@ -36,39 +36,9 @@ fn library<T: Serialize>(answer: Result<Answer<T>, Error>) -> Value {
     masked(serde_json::from_str(&serde_json::to_string(&answer.unwrap()).unwrap()).unwrap())
 }
 
-fn run(arguments: &[&str]) -> Vec<u8> {
-    let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-        .args(arguments)
-        .arg("--quiet")
-        .output()
-        .unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {error}");
-    output.stdout
-}
-
 fn asked(verb: &str, problem: &str, options: &[&str]) -> Value {
-    let arguments = [&[verb, problem, "--format", "json"], options].concat();
-    masked(serde_json::from_slice(&run(&arguments)).unwrap())
-}
-
-/// The file that the program prints of a built-in problem, in a folder of its own.
-struct Printed(std::path::PathBuf);
-
-impl Printed {
-    fn new(problem: &str, question: &str) -> Self {
-        let question: String = question.chars().filter(char::is_ascii_alphanumeric).collect();
-        let name = format!("lindstedt-one-path-{}-{question}.toml", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::write(&path, run(&["problems", "--show", problem])).unwrap();
-        Self(path)
-    }
-}
-
-impl Drop for Printed {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
-    }
+    let arguments = [&[verb, problem, "--quiet"], options].concat();
+    masked(program::json(&arguments))
 }
 
 /// A command, and the same question in Rust. `--set`, `--normalisation` and `--digits` are read from the
@@ -237,8 +207,9 @@ fn alike(questions: &[Question]) {
     for (command, question) in questions {
         let words: Vec<&str> = command.split(' ').collect();
         let (verb, problem, options) = (words[0], words[1], &words[2..]);
-        let file = Printed::new(problem, command);
-        let text = std::fs::read_to_string(&file.0).unwrap();
+        let text = program::text(&["problems", "--show", problem]);
+        let folder = Folder::new("one-path");
+        let path = folder.file("printed.toml", &text);
         let builtin = placed(Oscillator::builtin(problem).unwrap(), options);
         let read = placed(Oscillator::file(&text).unwrap(), options);
         // Digits of the table of times are its own.
@@ -248,7 +219,7 @@ fn alike(questions: &[Question]) {
         };
         let expected = question(&builtin.0, &builtin.1);
         assert_eq!(question(&read.0, &read.1), expected, "{command}: library, file");
-        for source in [problem, file.0.to_str().unwrap()] {
+        for source in [problem, &path] {
             assert_eq!(asked(verb, source, &options), expected, "{command}: program, {source}");
         }
         assert!(expected.as_object().unwrap().len() > 5, "{command}: {expected}");
@@ -274,23 +245,17 @@ fn motions_are_alike() {
 /// Name, table of parameters and condition of a file may be left out: what it says otherwise is the same.
 #[test]
 fn a_file_of_one_line() {
-    let folder = std::env::temp_dir().join(format!("lindstedt-one-line-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("Hard_Spring.toml");
-    std::fs::write(&path, "equation = \"x'' + x + eps*beta*x^3 = 0\"\n").unwrap();
-    let path = path.to_str().unwrap();
+    let folder = Folder::new("one-line");
+    let name = "Hard_Spring.toml";
+    let path = &folder.file(name, "equation = \"x'' + x + eps*beta*x^3 = 0\"\n");
     let options = ["--order", "2", "--set", "beta=1/2"];
     let mut answer = asked("derive", path, &options);
     assert_eq!(answer["problem"], "hard-spring");
     answer["problem"] = Value::from("oscillator");
     assert_eq!(answer, asked("derive", "x'' + x + eps*beta*x^3 = 0", &options));
-    std::fs::write(path, "equation = \"x'' + x + eps*y^3 = 0\"\n").unwrap();
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(["derive", path]).output().unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("y is the name of an unknown"), "{error}");
-    std::fs::remove_dir_all(&folder).unwrap();
+    folder.file(name, "equation = \"x'' + x + eps*y^3 = 0\"\n");
+    let (code, error) = refusal(&["derive", path]);
+    assert!(code == Some(2) && error.contains("y is the name of an unknown"), "{error}");
 }
 
 /// Pi is a number in every equation: a symbol where formulas are exact, its value in time, and refused with
@@ -312,11 +277,8 @@ fn pi_is_a_number() {
         (&["derive", equation], 3, "`derive --normalisation free` keeps pi as a symbol"),
         (&["derive", equation, "--set", "pi=3"], 2, "pi is a number"),
     ] {
-        let program = env!("CARGO_BIN_EXE_lindstedt");
-        let output = Command::new(program).args(arguments).output().unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(exit), "{error}");
-        assert!(error.contains(words), "{error}");
+        let (code, error) = refusal(arguments);
+        assert!(code == Some(exit) && error.contains(words), "{error}");
     }
 }
 
@@ -334,10 +296,8 @@ fn an_equation_is_a_problem() {
     assert_eq!(set["series"]["frequency"][1]["exact"], "3/16");
     for name in ["y", "x_2", "w", "x1"] {
         let equation = format!("x'' + x + eps*{name}*x^2 = 0");
-        let program = env!("CARGO_BIN_EXE_lindstedt");
-        let output = Command::new(program).args(["derive", &equation]).output().unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{name}: {error}");
+        let (code, error) = refusal(&["derive", &equation]);
+        assert_eq!(code, Some(2), "{name}: {error}");
         assert!(error.contains(&format!("{name} is the name of an unknown")), "{error}");
     }
 }

@@ -2,57 +2,12 @@
 //! deleted that was not made.
 #![cfg(unix)]
 
+use crate::program::{Folder, lindstedt};
 use std::fs;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{PermissionsExt, symlink};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 use std::time::{Duration, SystemTime};
-
-/// A folder for one test.
-pub struct Folder(pub PathBuf);
-
-impl Folder {
-    pub fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("outputs-{name}"));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    pub fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).unwrap_or_default()
-    }
-
-    /// The names there are.
-    pub fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.0).unwrap();
-        let mut names: Vec<String> =
-            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    /// The program, in this folder.
-    pub fn program(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
-        command.args(arguments).arg("--quiet").current_dir(&self.0);
-        command
-    }
-
-    pub fn run(&self, arguments: &[&str]) -> (Option<i32>, String) {
-        let Output { status, stderr, .. } = self.program(arguments).output().unwrap();
-        (status.code(), String::from_utf8_lossy(&stderr).into_owned())
-    }
-
-    /// The program under a limit of the shell, in blocks or kibibytes.
-    pub fn under(&self, limit: &str, arguments: &[&str]) -> Output {
-        let program = env!("CARGO_BIN_EXE_lindstedt");
-        let mut command = Command::new("sh");
-        command.args(["-c", &format!("ulimit {limit} && exec \"$0\" \"$@\""), program]);
-        command.args(arguments).arg("--quiet").current_dir(&self.0).output().unwrap()
-    }
-}
 
 const FILE: &str = "equation = \"x'' + x + eps*x^3 = 0\"\n";
 
@@ -196,8 +151,7 @@ fn arguments_that_are_no_text() {
 #[test]
 fn a_shell_completes_and_man_explains() {
     let printed = |arguments: &[&str]| {
-        let output =
-            Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap();
+        let output = lindstedt(arguments);
         (output.status.code(), String::from_utf8(output.stdout).unwrap())
     };
     let (code, script) = printed(&["completions", "bash"]);

@@ -3,77 +3,15 @@
 
 mod bad;
 
+use crate::program::{Folder, example, lindstedt, text};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
-}
-
-fn text(arguments: &[&str]) -> String {
-    let output = lindstedt(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// A folder of this test that is removed with it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-    fn file(&self, name: &str, content: &[u8]) -> String {
-        let path = self.0.join(name);
-        std::fs::write(&path, content).unwrap();
-        path.to_str().unwrap().to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn example(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples");
-    folder.join(name).to_str().unwrap().to_owned()
-}
-
-#[test]
-fn a_file_is_classified_and_derived() {
-    insta::assert_snapshot!(text(&[
-        "derive",
-        &example("rayleigh.toml"),
-        "--order",
-        "2",
-        "--digits",
-        "12"
-    ]));
-    insta::assert_snapshot!(text(&["problems", "--show", &example("vibro-impact.toml")]));
-    let scaled = [
-        "derive",
-        &example("duffing.toml"),
-        "--order",
-        "1",
-        "--digits",
-        "12",
-        "--set",
-        "amplitude=1/2",
-    ];
-    insta::assert_snapshot!(text(&scaled));
-}
 
 #[test]
 fn built_in_problems_run_from_their_printed_files() {
     let folder = Folder::new("printed");
     for name in ["power-law", "pendulum", "duffing", "van-der-pol"] {
         let shown = text(&["problems", "--show", name]);
-        let path = folder.file("printed.toml", shown.as_bytes());
+        let path = folder.file("printed.toml", &shown);
         let run = |problem: &str| -> Value {
             let arguments =
                 ["derive", problem, "--order", "4", "--digits", "25", "--format", "json"];
@@ -87,7 +25,7 @@ fn built_in_problems_run_from_their_printed_files() {
     }
     for name in ["stick-slip", "vibro-impact"] {
         let shown = text(&["problems", "--show", name]);
-        let path = folder.file("printed.toml", shown.as_bytes());
+        let path = folder.file("printed.toml", &shown);
         assert_eq!(text(&["problems", "--show", &path]), shown, "{name}");
     }
 }
@@ -127,7 +65,7 @@ fn values_of_a_file_are_judged_like_those_given() {
         let text = format!(
             "name = \"a\"\nequation = \"{equation}\"\n[parameters]\n{name} = {{ value = \"{value}\" }}\n"
         );
-        folder.file("a.toml", text.as_bytes())
+        folder.file("a.toml", text)
     };
     let check = |path: &str, verbs: &[&str], message: &str| {
         for verb in verbs {
@@ -177,7 +115,7 @@ fn roots_of_the_stiffness_are_written_as_they_are_meant() {
         [("2/3", "(2/3)^(1/2)"), ("4/9", "2/3"), ("3", "3^(1/2)"), ("1/3", "(1/3)^(1/2)")]
     {
         let text = format!("name = \"a\"\nequation = \"x'' + {stiffness}*x + eps*x^3 = 0\"\n");
-        let path = folder.file("a.toml", text.as_bytes());
+        let path = folder.file("a.toml", text);
         let shown = lindstedt(&["derive", &path, "--order", "1", "--format", "json"]);
         let value: Value = serde_json::from_slice(&shown.stdout).unwrap();
         let series = value["series"]["frequency"][0]["exact"].as_str().unwrap();
@@ -194,7 +132,7 @@ fn what_has_no_effect_is_said() {
             "name = \"asked\"\nequation = \"x'' + x + eps*x^3\"\nasked = [{asked}]\n\
              [parameters]\namplitude = {{ value = \"2\" }}\n[initial]\nx = \"{x}\"\nvelocity = \"0\"\n"
         );
-        folder.file("asked.toml", text.as_bytes())
+        folder.file("asked.toml", text)
     };
     let messages = |path: &str, more: &[&str]| {
         let output = lindstedt(&[&["derive", path, "--order", "2", "--quiet"], more].concat());
@@ -218,7 +156,7 @@ fn a_motion_begins_as_the_file_says() {
     let folder = Folder::new("initial");
     let text = "name = \"initial\"\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = \"0\"\n\
                 velocity = \"1\"\n";
-    let path = folder.file("initial.toml", text.as_bytes());
+    let path = folder.file("initial.toml", text);
     let all = ["simulate", &path, "--set", "eps=0", "--until", "pi/2", "--format", "json"];
     let found: Value = serde_json::from_str(&text_of(&all)).unwrap();
     let x: f64 = found["final"]["x"]["decimal"].as_str().unwrap().parse().unwrap();
@@ -235,7 +173,7 @@ fn the_list_of_keys_is_whole() {
     let folder = Folder::new("keys");
     for key in ["conditions".to_owned(), "k".repeat(5000)] {
         let content = format!("name = 'a'\nequation = \"x'' + x + eps*x^3\"\n{key} = 'x'\n");
-        let output = lindstedt(&["derive", &folder.file("keys.toml", content.as_bytes())]);
+        let output = lindstedt(&["derive", &folder.file("keys.toml", content)]);
         let error = String::from_utf8(output.stderr).unwrap();
         assert!(error.contains(":3:1: unknown field `") && error.len() < 600, "{error}");
         for known in ["name", "title", "condition", "impact", "initial", "notes", "source"] {
@@ -253,7 +191,7 @@ fn starts_that_contradict_each_other_are_said() {
             "name = \"starts\"\nequation = \"x'' + x + eps*x^3\"\n[parameters]\n{amplitude}\n\
              [initial]\nx = \"{x}\"\nvelocity = \"{velocity}\"\n"
         );
-        folder.file("starts.toml", text.as_bytes())
+        folder.file("starts.toml", text)
     };
     let half = "amplitude = { value = \"1/2\" }";
     let commands: [(&[&str], bool); 5] = [
@@ -305,9 +243,8 @@ fn a_delay_with_pi_on_the_card() {
     let text = "name = \"card\"\nequation = \"x'' + 2*x + eps*k*x'(t - T) = 0\"\n\
                 condition = \"free-amplitude\"\n[parameters]\nk = { value = \"1/2\" }\n\
                 T = { value = \"pi/3\" }\n";
-    let path = folder.file("card.toml", text.as_bytes());
-    let output = lindstedt(&["derive", &path, "--order", "1", "--quiet"]);
-    let text = String::from_utf8(output.stdout).unwrap();
+    let path = folder.file("card.toml", text);
+    let text = text_of(&["derive", &path, "--order", "1"]);
     let number = |name: &str| -> f64 {
         let line = text.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap();
         line.trim_end_matches("*a").trim().parse().unwrap()

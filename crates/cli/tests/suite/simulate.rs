@@ -3,14 +3,12 @@
 
 mod sections;
 
+use crate::program::{self, Folder, float};
 use serde_json::Value;
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
 fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
-    command.args(["simulate", "--quiet"]).args(arguments);
-    command
+    program::command(&[&["simulate", "--quiet"], arguments].concat())
 }
 
 fn run(arguments: &[&str]) -> Output {
@@ -18,17 +16,7 @@ fn run(arguments: &[&str]) -> Output {
 }
 
 fn json(arguments: &[&str]) -> Value {
-    let output = run(&[arguments, &["--format", "json"]].concat());
-    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn float(number: &Value) -> f64 {
-    number["decimal"].as_str().unwrap().parse().unwrap()
-}
-
-fn file(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("lindstedt-simulate-{}-{name}", std::process::id()))
+    program::json(&[&["simulate", "--quiet"], arguments].concat())
 }
 
 /// The period 4 K(sin(a/2)) of the pendulum and B(1/4, 1/2) sqrt(2) of x'' + x^3 = 0 (both from
@@ -132,24 +120,21 @@ fn figures_show_what_happens() {
         (&bounce, "time", &["impact", "<polygon", "time t"]),
         (&bounce, "phase", &["impact", "phase portrait"]),
     ];
+    let folder = Folder::new("figures");
     for (arguments, figure, words) in cases {
-        let path = file(&format!("{figure}.svg"));
-        let plot = ["--figure", figure, "--plot", path.to_str().unwrap()];
+        let plot = ["--figure", figure, "--plot", &folder.path("x.svg")];
         assert!(run(&[arguments, &plot].concat()).status.success());
-        let drawn = std::fs::read_to_string(&path).unwrap();
+        let drawn = folder.text("x.svg");
         assert!(drawn.trim_end().ends_with("</svg>") && drawn.contains("width=\"960\""));
         for word in words {
             assert!(word.split('|').any(|word| drawn.contains(word)), "{figure}: {word}");
         }
-        let _ = std::fs::remove_file(path);
     }
-    let path = file("table.csv");
-    assert!(run(&[&belt[..], &["--plot", path.to_str().unwrap()]].concat()).status.success());
-    let table = std::fs::read_to_string(&path).unwrap();
+    assert!(run(&[&belt[..], &["--plot", &folder.path("x.csv")]].concat()).status.success());
+    let table = folder.text("x.csv");
     assert!(
         table.contains("\nsticking,") && table.contains("\nstick,") && table.contains("\nslip,")
     );
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]
@@ -192,12 +177,11 @@ fn refusals_have_their_exit_code() {
         assert!(!output.stderr.is_empty(), "{arguments:?}");
     }
     // A file of another sweep is not overwritten.
-    let path = file("other");
-    std::fs::write(&path, "mine\n").unwrap();
-    let other = ["--sweep", "gamma=0.6..0.7:2", "--resume", path.to_str().unwrap()];
+    let folder = Folder::new("other");
+    let path = folder.file("r", "mine\n");
+    let other = ["--sweep", "gamma=0.6..0.7:2", "--resume", &path];
     assert_eq!(run(&[&["stick-slip"], &other[..]].concat()).status.code(), Some(5));
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine\n");
-    let _ = std::fs::remove_file(path);
+    assert_eq!(folder.text("r"), "mine\n");
 }
 
 /// A problem file is integrated with its small parameter set (Duffing's first integral holds at

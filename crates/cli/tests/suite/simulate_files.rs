@@ -2,51 +2,15 @@
 //! the built-in problems from their printed files.
 #![allow(clippy::unwrap_used)]
 
+use crate::program::{self, Folder, float, json, lindstedt, root, without};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
-}
 
 fn simulate(arguments: &[&str]) -> Value {
-    let command = [&["simulate", "--quiet", "--format", "json"], arguments].concat();
-    let output = lindstedt(&command);
-    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stdout));
-    let mut value: Value = serde_json::from_slice(&output.stdout).unwrap();
-    value["seconds"] = 0.into();
-    value
+    without(json(&[&["simulate", "--quiet"], arguments].concat()), &["seconds"])
 }
 
 fn refusal(arguments: &[&str]) -> (Option<i32>, String) {
-    let output = lindstedt(&[&["simulate", "--quiet"], arguments].concat());
-    (output.status.code(), String::from_utf8(output.stderr).unwrap())
-}
-
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-    fn file(&self, name: &str, content: &str) -> String {
-        let path = self.0.join(name).with_extension("toml");
-        std::fs::write(&path, content).unwrap();
-        path.to_str().unwrap().to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn float(number: &Value) -> f64 {
-    number["decimal"].as_str().unwrap().parse().unwrap()
+    program::refusal(&[&["simulate", "--quiet"], arguments].concat())
 }
 
 fn end(found: &Value) -> [f64; 2] {
@@ -55,9 +19,8 @@ fn end(found: &Value) -> [f64; 2] {
 
 #[test]
 fn every_example_moves() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples");
     let mut count = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
+    for entry in std::fs::read_dir(root().join("docs/examples")).unwrap() {
         let path = entry.unwrap().path();
         let line = [path.to_str().unwrap(), "--until", "3", "--digits", "10"];
         if path.ends_with("wright-hopf.toml") {
@@ -90,15 +53,14 @@ fn built_in_problems_move_as_their_printed_files() {
         ("vibro-impact", &["--sweep", "A=0..1/10:3", "--skip", "5", "--impacts", "4"]),
     ];
     for (name, arguments) in cases {
-        let output = lindstedt(&["problems", "--show", name]);
-        let path = folder.file(name, &String::from_utf8(output.stdout).unwrap());
+        let path = folder.file("x.toml", program::text(&["problems", "--show", name]));
         let run = |problem: &str| simulate(&[&[problem], arguments].concat());
         assert_eq!(run(name), run(&path), "{name} {arguments:?}");
     }
     // The same state with the history said, by the general route.
-    let path = folder.0.join("vibro-impact.toml");
+    let path = folder.path("x.toml");
     let base = ["--state=-3/2,1/2", "--set", "A=1/10", "--impacts", "5"];
-    let said = [&[path.to_str().unwrap()], &base[..], &["--history", "free-flight"]].concat();
+    let said = [&[&*path], &base[..], &["--history", "free-flight"]].concat();
     let built_in = simulate(&[&["vibro-impact"], &base[..]].concat());
     assert_eq!(simulate(&said)["events"], built_in["events"]);
     // And another history is another motion.
@@ -123,11 +85,11 @@ fn the_orbit_is_recognised_by_its_form() {
         )
     };
     let ask = ["--perturb", "1/1000", "--impacts", "4", "--digits", "12"];
-    let own = simulate(&[&[&*folder.file("other", &file(""))], &ask[..]].concat());
+    let own = simulate(&[&[&*folder.file("other.toml", file(""))], &ask[..]].concat());
     let known = simulate(&[&["vibro-impact", "--set", "A=1/50"], &ask[..]].concat());
     assert_eq!(own["growth"], known["growth"]);
     assert_eq!(own["events"], known["events"]);
-    let path = folder.file("cubic", &file(" + x^3"));
+    let path = folder.file("cubic.toml", file(" + x^3"));
     let (code, error) = refusal(&[&[&*path], &ask[..]].concat());
     assert!(code == Some(2) && error.contains("starts at a state"), "{error}");
     assert!(simulate(&[&path, "--impacts", "1"])["start"]["chosen"].is_string());
@@ -154,7 +116,7 @@ fn histories() {
     ];
     let mut last = Vec::new();
     for (name, initial, is_cosine) in cases {
-        let path = folder.file(name, &file(initial));
+        let path = folder.file("x.toml", file(initial));
         let found = simulate(&[&path, "--until", "10", "--digits", "20"]);
         let state = end(&found);
         let near = (0..2).all(|k| (state[k] - exact[k]).abs() < 1e-14);
@@ -164,7 +126,7 @@ fn histories() {
     }
     assert_eq!(last[3], last[4]);
     // Before 2 pi the constant history is a constant force: x = -1 + 2 cos(t/sqrt 2).
-    let path = folder.file("constant", &file("x = '1'\nvelocity = '0'"));
+    let path = folder.file("constant.toml", file("x = '1'\nvelocity = '0'"));
     let [x, _] = end(&simulate(&[&path, "--until", "6", "--digits", "20"]));
     assert!((x - (-1.0 + 2.0 * (6.0 / 2f64.sqrt()).cos())).abs() < 1e-14, "{x}");
     // What the command line says comes first.
@@ -173,10 +135,10 @@ fn histories() {
     // No closed form of the free flight; x in a history.
     let nonlinear =
         file("history = 'free-flight'\nx = '1'\nvelocity = '0'").replace("x/2 +", "x^3 +");
-    let path = folder.file("nonlinear", &nonlinear);
+    let path = folder.file("nonlinear.toml", &nonlinear);
     let (code, error) = refusal(&[&path]);
     assert!(code == Some(3) && error.contains("not linear"), "{error}");
-    let path = folder.file("state", &file("history = 'x'"));
+    let path = folder.file("state.toml", file("history = 'x'"));
     let (code, error) = refusal(&[&path]);
     assert!(code == Some(2) && error.contains("a history is an expression in t"), "{error}");
 }
@@ -188,7 +150,7 @@ fn walls() {
     let text = "name = 'wall'\nequation = \"x'' + k x = 0\"\ncondition = []\n[parameters]\n\
                 k = { value = '1' }\nR = { value = '4/5' }\n[initial]\nx = '1'\nvelocity = '0'\n\
                 [impact]\nposition = '-1/2'\ncrossing = 'falling'\nrestitution = 'R'\n";
-    let path = folder.file("wall", text);
+    let path = folder.file("wall.toml", text);
     let found = simulate(&[&path, "--impacts", "2"]);
     let events = found["events"].as_array().unwrap();
     let time = 2.0 * std::f64::consts::PI / 3.0;
@@ -198,7 +160,7 @@ fn walls() {
     let (code, error) = refusal(&[&path, "--sweep", "k"]);
     assert!(code == Some(2) && error.contains("gives no range for k"), "{error}");
     let ranged = text.replace("condition", "swept = ['R=1/2..4/5:3']\nfixed = ['k']\ncondition");
-    let path = folder.file("ranged", &ranged);
+    let path = folder.file("ranged.toml", &ranged);
     let swept = simulate(&[&path, "--sweep", "R", "--skip", "0", "--impacts", "2"]);
     assert_eq!(swept["sweep"]["columns"].as_array().unwrap().len(), 3);
     let (code, error) = refusal(&[&path, "--sweep", "k=1..2:3"]);
@@ -216,7 +178,7 @@ fn walls() {
 fn without_a_small_parameter() {
     let folder = Folder::new("plain");
     let file = |force: &str| format!("name = 'plain'\nequation = \"x'' + {force} = 0\"\n");
-    let found = simulate(&[&folder.file("pendulum", &file("sin(x)")), "--until", "7"]);
+    let found = simulate(&[&folder.file("pendulum.toml", file("sin(x)")), "--until", "7"]);
     let [x, v] = ["x", "v"].map(|name| float(&found["final"][name]));
     assert!((v * v / 2.0 - x.cos() + 2f64.cos()).abs() < 1e-14, "{x} {v}");
     for (force, reason) in [
@@ -225,7 +187,7 @@ fn without_a_small_parameter() {
         ("x'/10 + x - 2*cos(3*t/2)", "1/10*x' has no factor eps"),
         ("1 - cos(t)", "no term k*x stands in the equation without eps"),
     ] {
-        let path = folder.file("bare", &file(force));
+        let path = folder.file("bare.toml", file(force));
         for verb in ["derive", "evaluate", "verify"] {
             let output = lindstedt(&[verb, "--quiet", &path]);
             let error = String::from_utf8(output.stderr).unwrap();
@@ -242,7 +204,7 @@ fn dry_friction() {
     let folder = Folder::new("friction");
     let text = "name = 'rub'\nequation = \"x'' + x + eps m sign(x') = 0\"\ncondition = []\n\
                 [parameters]\nm = { value = '3/10' }\n[initial]\nx = '1'\nvelocity = '0'\n";
-    let path = folder.file("rub", text);
+    let path = folder.file("rub.toml", text);
     let found = simulate(&[&path, "--until", "10"]);
     let [x, v] = end(&found);
     assert!((x + 0.2).abs() < 1e-14 && v.abs() < 1e-14, "{x} {v}");
@@ -257,12 +219,12 @@ fn determined_parameters() {
     let folder = Folder::new("follows");
     let text = "name = 'f'\nequation = \"x'' + k x = 0\"\ncondition = []\n[parameters]\n\
                 k = { follows = '4*pi^2/p^2' }\np = { value = '1' }\n";
-    let path = folder.file("follows", text);
+    let path = folder.file("follows.toml", text);
     let [x, v] = end(&simulate(&[&path, "--until", "1", "--state", "1,1"]));
     assert!((x - 1.0).abs() < 1e-14 && (v - 1.0).abs() < 1e-14, "{x} {v}");
     let [x, _] = end(&simulate(&[&path, "--until", "1", "--state", "1,1", "--set", "p=2"]));
     assert!((x + 1.0).abs() < 1e-14, "{x}");
-    let path = folder.file("words", &text.replace("4*pi^2/p^2", "see the notes"));
+    let path = folder.file("words.toml", text.replace("4*pi^2/p^2", "see the notes"));
     let (code, error) = refusal(&[&path]);
     assert!(code == Some(2) && error.contains("follows of k: the name see"), "{error}");
 }
@@ -273,8 +235,8 @@ fn determined_parameters() {
 #[test]
 fn a_motion_that_ends_is_shown_up_to_its_end() {
     let folder = Folder::new("ends");
-    let file =
-        folder.file("ends", "name = \"ends\"\nequation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\n");
+    let file = folder
+        .file("ends.toml", "name = \"ends\"\nequation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\n");
     let command = ["simulate", &file, "--set", "eps=-2", "--periods", "2", "--digits", "15"];
     let output = lindstedt(&[&command[..], &["--quiet", "--format", "json"]].concat());
     assert_eq!(output.status.code(), Some(3));

@@ -1,25 +1,25 @@
 //! `lindstedt threshold`: the contract's keys, the numbers of the issue, sweeps, figures, refusals.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use crate::program::{self, Folder, lindstedt, without};
 use lindstedt::grid::Axis;
 use lindstedt::{Oscillator, Standing, Threshold, Work};
 use lindstedt_report::Present;
 use serde_json::Value;
 use std::f64::consts::PI;
-use std::process::{Command, Output};
+use std::process::Output;
 
 mod files;
 mod forms;
 
+const THRESHOLD: &[&str] = &["threshold", "stick-slip"];
+
 fn run(arguments: &[&str]) -> Output {
-    let command = [&["threshold", "stick-slip"], arguments].concat();
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(command).output().unwrap()
+    lindstedt(&[THRESHOLD, arguments].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
-    let output = run(&[arguments, &["--format", "json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&[THRESHOLD, arguments].concat())
 }
 
 /// What there is no time to write is left out, and that is said.
@@ -106,20 +106,16 @@ fn sweeps_in_one_and_two_parameters() {
 
 #[test]
 fn figure_and_table() {
-    let folder = std::env::temp_dir();
-    let name =
-        |kind: &str| folder.join(format!("lindstedt-threshold-{}.{kind}", std::process::id()));
-    let (svg, csv) = (name("svg"), name("csv"));
+    let folder = Folder::new("plots");
+    let (svg, csv) = (folder.path("x.svg"), folder.path("x.csv"));
     let sweeps = ["--sweep", "vstar=0..1:50", "--sweep", "b=1,2,5,10"];
-    let plots = ["--plot", svg.to_str().unwrap(), "--plot", csv.to_str().unwrap()];
+    let plots = ["--plot", &svg, "--plot", &csv];
     assert!(run(&[&sweeps[..], &plots[..]].concat()).status.success());
-    let (drawn, table) =
-        (std::fs::read_to_string(&svg).unwrap(), std::fs::read_to_string(&csv).unwrap());
+    let (drawn, table) = (folder.text("x.svg"), folder.text("x.csv"));
     // Four cusps; two zeros each for b = 2, 5, 10.
     assert_eq!((drawn.matches("<circle").count(), drawn.matches("<polygon").count()), (6, 4));
     assert!(drawn.contains("b = 10") && drawn.trim_end().ends_with("</svg>"));
     assert_eq!(table.lines().count(), 1 + 200);
-    let _ = (std::fs::remove_file(svg), std::fs::remove_file(csv));
 }
 
 #[test]
@@ -149,61 +145,33 @@ fn refusals_have_their_exit_code() {
 }
 
 /// A file with this equation and these parameters; removed when dropped.
-struct File(std::path::PathBuf);
+struct File(String, #[allow(dead_code, reason = "it lives as long")] Folder);
 
 impl File {
     fn new(name: &str, equation: &str, parameters: &[(&str, &str)]) -> Self {
-        let mut text =
-            format!("name = \"{name}\"\nequation = \"{equation}\"\ncondition = []\n[parameters]\n");
-        for (name, value) in parameters {
-            text += &format!("{name} = {{ value = \"{value}\" }}\n");
-        }
-        Self::with_text(name, &text)
+        let folder = Folder::new(name);
+        let path = folder.problem(equation, parameters, "condition = []");
+        Self(path, folder)
     }
     fn with_text(name: &str, text: &str) -> Self {
-        let name = format!("lindstedt-threshold-{}-{name}.toml", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::write(&path, text).unwrap();
-        Self(path)
+        let folder = Folder::new(name);
+        let path = folder.file("problem.toml", text);
+        Self(path, folder)
     }
     fn run(&self, arguments: &[&str]) -> Output {
-        lindstedt(&[&["threshold", self.0.to_str().unwrap()], arguments].concat())
+        lindstedt(&[&["threshold", &self.0], arguments].concat())
     }
     fn json(&self, arguments: &[&str]) -> Value {
-        let output = self.run(&[arguments, &["--format", "json"]].concat());
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
-        serde_json::from_slice(&output.stdout).unwrap()
+        program::json(&[&["threshold", &self.0], arguments].concat())
     }
-}
-
-impl Drop for File {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
-    }
-}
-
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
 }
 
 fn example(name: &str, arguments: &[&str]) -> Value {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/");
-    let path = format!("{folder}{name}.toml");
-    let output = lindstedt(&[&["threshold", &path], arguments, &["--format", "json"][..]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&[&["threshold", &program::example(name)], arguments].concat())
 }
 
 fn decimal(number: &Value) -> &str {
     number["decimal"].as_str().unwrap()
-}
-
-/// What differs between two runs of the same thing.
-fn without(mut result: Value, keys: &[&str]) -> Value {
-    for key in keys {
-        result.as_object_mut().unwrap().remove(*key);
-    }
-    result
 }
 
 #[test]

@@ -1,19 +1,11 @@
 //! `lindstedt derive --tier`: the numeric tiers beside the exact one.
 #![allow(clippy::unwrap_used)]
 
+use crate::program::{Folder, json, lindstedt};
 use rug::Float;
 use serde_json::Value;
-use std::process::{Command, Output};
 
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = lindstedt(&[arguments, &["--format", "json", "--quiet"]].concat());
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
+const AMPLITUDE: &str = "condition = \"initial-amplitude\"";
 
 fn float(text: &Value) -> Float {
     Float::with_val(300, Float::parse(text.as_str().unwrap()).unwrap())
@@ -96,30 +88,22 @@ fn bad_combinations_are_refused() {
 /// mpmath 1.3.0, for x + eps sgn x it is (2/pi) arccos(eps/(1 + eps)) = 1 - (2/pi)(eps - eps^2 + ...).
 #[test]
 fn forces_of_files_that_are_not_smooth() {
-    let folder = std::env::temp_dir().join(format!("lindstedt-tiers-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = Folder::new("tiers");
     let two_over_pi = std::f64::consts::FRAC_2_PI;
     let cases = [
         ("abs(x)*x", [-0.424_413_181_578_387_56, 0.275_195_606_140_537_5]),
         ("sign(x)", [-two_over_pi, two_over_pi]),
     ];
     for (force, expected) in cases {
-        let file = folder.join("force.toml");
-        let text = format!(
-            "name = \"force\"\nequation = \"x'' + x + eps*{force} = 0\"\n\
-             condition = \"initial-amplitude\"\n"
-        );
-        std::fs::write(&file, text).unwrap();
-        let path = file.to_str().unwrap();
-        assert!(!lindstedt(&["derive", path, "--quiet"]).status.success(), "exact");
-        let found = json(&["derive", path, "--order", "2", "--tier", "collocation"]);
+        let path = folder.problem(&format!("x'' + x + eps*{force} = 0"), &[], AMPLITUDE);
+        assert!(!lindstedt(&["derive", &path, "--quiet"]).status.success(), "exact");
+        let found = json(&["derive", &path, "--order", "2", "--tier", "collocation"]);
         for (n, truth) in expected.iter().enumerate() {
             let number = &found["series"]["period_over_2pi"][n + 1];
             let value = float(&number["decimal"]).to_f64();
             assert!((value - truth).abs() < 1e-14, "{force} {n}: {value}");
         }
     }
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 /// x'' + x + eps |x| = 0 has T = pi/sqrt(1 + eps) + pi/sqrt(1 - eps), order 4 of T/2pi 35/128. Values
@@ -129,16 +113,10 @@ fn singularities_at_moving_times_are_refused() {
     for force in
         ["abs(x)", "sqrt(x^2)", "sign(x) + x^2", "abs(x)*x + x^2/2", "abs(x)*x'", "abs(x - 1/2)"]
     {
-        let text = format!(
-            "name = \"kink\"\nequation = \"x'' + x + eps*({force}) = 0\"\ncondition = \"initial-amplitude\"\n"
-        );
-        let name = format!("lindstedt-{}-kink.toml", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::write(&path, text).unwrap();
+        let folder = Folder::new("kink");
+        let path = folder.problem(&format!("x'' + x + eps*({force}) = 0"), &[], AMPLITUDE);
         for tier in ["collocation", "fourier"] {
-            let arguments = ["derive", path.to_str().unwrap(), "--order", "4", "--tier", tier];
-            let output =
-                Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap();
+            let output = lindstedt(&["derive", &path, "--order", "4", "--tier", tier]);
             let error = String::from_utf8(output.stderr).unwrap();
             assert_eq!(output.status.code(), Some(3), "{force}: {error}");
             assert!(output.stdout.is_empty());

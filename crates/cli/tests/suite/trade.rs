@@ -1,12 +1,8 @@
 //! `lindstedt trade`: the rows, their order, their errors, the front, the files.
 #![allow(clippy::unwrap_used)]
 
+use crate::program::{self, Folder, lindstedt};
 use serde_json::Value;
-use std::process::{Command, Output};
-
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
-}
 
 const SMALL: [&str; 8] =
     ["--orders", "2,6", "--digits", "20", "--harmonics", "16", "--repeats", "1"];
@@ -22,10 +18,7 @@ fn at_order(problem: &str, order: &str, more: &[&str]) -> Value {
 }
 
 fn read(problem: &str, arguments: &[&str]) -> Value {
-    let start = ["trade", problem, "--quiet", "--format", "json"];
-    let output = lindstedt(&[&start, arguments].concat());
-    assert!(output.status.success(), "{problem}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&[&["trade", problem, "--quiet"], arguments].concat())
 }
 
 /// Infinite where a run states no error.
@@ -182,23 +175,20 @@ fn parameters_enter() {
 
 #[test]
 fn figure_and_table() {
-    let folder = std::env::temp_dir().join(format!("lindstedt-trade-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let (svg, csv) = (folder.join("a.svg"), folder.join("a.csv"));
-    let files = ["--plot", svg.to_str().unwrap(), "--plot", csv.to_str().unwrap()];
-    let value = json("duffing", &files);
+    let folder = Folder::new("trade");
+    let value =
+        json("duffing", &["--plot", &folder.path("a.svg"), "--plot", &folder.path("a.csv")]);
     let count = value["rows"].as_array().unwrap().len();
-    let table = std::fs::read_to_string(&csv).unwrap();
+    let table = folder.text("a.csv");
     assert_eq!(table.lines().count(), count + 1);
     let width = table.lines().next().unwrap().split(',').count();
     assert!(table.lines().all(|line| line.split(',').count() == width));
-    let figure = std::fs::read_to_string(&svg).unwrap();
+    let figure = folder.text("a.svg");
     assert!(figure.starts_with("<svg") && figure.contains("Pareto front"));
     // Partial sums are rings; the marks of the others differ from method to method.
     assert!(["<circle", "<polygon"].iter().all(|mark| figure.contains(mark)));
     // Every row has its label.
     assert!(figure.matches("<text").count() > count);
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]
@@ -211,14 +201,15 @@ fn limits_keep_the_finished_rows() {
     assert_eq!(value["finished"], false);
     assert!(value["rows"].as_array().unwrap().len() < 40);
     // A figure of no rows is no error about drawing.
-    let svg = std::env::temp_dir().join(format!("lindstedt-no-rows-{}.svg", std::process::id()));
+    let folder = Folder::new("no-rows");
+    let svg = folder.path("x.svg");
     let drawn = ["trade", "duffing", "--orders", "64", "--digits", "1000", "--repeats", "1000"];
-    let drawn = [&drawn[..], &["--plot", svg.to_str().unwrap()]].concat();
+    let drawn = [&drawn[..], &["--plot", &svg]].concat();
     // Which step a limit meets depends on the machine; one of them is between steps.
     let said = ["0.2", "0.4", "0.7", "1", "1.3", "1.7"].map(|limit| {
         let output = lindstedt(&[&drawn[..], &["--limit-seconds", limit]].concat());
         let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.code() == Some(4) && !svg.exists(), "{said}");
+        assert!(output.status.code() == Some(4) && folder.names().is_empty(), "{said}");
         said
     });
     assert!(said.iter().any(|said| said.contains("is not written")), "{said:?}");

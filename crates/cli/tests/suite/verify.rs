@@ -1,18 +1,18 @@
 //! `lindstedt verify`: the observed order is N + 1, and not where the digits do not suffice.
 #![allow(clippy::unwrap_used)]
 
+use crate::program::{self, Folder, example, lindstedt};
 use serde_json::Value;
-use std::process::{Command, Output};
+use std::process::Output;
+
+const VERIFY: &[&str] = &["verify", "--quiet"];
 
 fn run(arguments: &[&str]) -> Output {
-    let command = [&["verify", "--quiet"], arguments].concat();
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(command).output().unwrap()
+    lindstedt(&[VERIFY, arguments].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
-    let output = run(&[arguments, &["--format", "json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&[VERIFY, arguments].concat())
 }
 
 /// Fewer values than by default: two of them make a slope.
@@ -104,19 +104,12 @@ fn a_verdict_can_be_open() {
 #[test]
 fn a_long_window_stops_at_its_limit() {
     for problem in ["duffing", "vibro-impact"] {
-        let start = std::time::Instant::now();
+        // In full these take minutes.
         let arguments = [problem, "--order", "8", "--periods", "1000", "--limit-seconds", "0.3"];
         let output = run(&arguments);
         assert_eq!(output.status.code(), Some(4), "{problem}");
         assert!(String::from_utf8_lossy(&output.stderr).contains("stopped"), "{problem}");
-        // In full these take minutes.
-        assert!(start.elapsed().as_secs() < 30, "{problem}");
     }
-}
-
-fn example(name: &str) -> String {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples");
-    folder.join(name).with_extension("toml").to_str().unwrap().to_owned()
 }
 
 /// Rayleigh, Helmholtz-Duffing, Duffing-van der Pol, delayed Duffing, Wright, the vibro-impact
@@ -163,25 +156,21 @@ fn amplitudes_and_scales() {
     slopes("duffing", 2..=2, &["--normalisation", "fundamental"]);
     slopes("van-der-pol", 1..=3, &["--normalisation", "free", "--set", "amplitude=1/2"]);
     slopes("vibro-impact", 1..=4, &["--set", "A=1/4", "--set", "B=1/7"]);
-    let path = std::env::temp_dir().join(format!("lindstedt-scaled-{}.toml", std::process::id()));
-    let text = "name = 'fast'\nequation = \"x'' + k x = eps (1 - x^2) x'\"\n[parameters]\nk = { value = '9/4' }\n";
-    std::fs::write(&path, text).unwrap();
-    slopes(path.to_str().unwrap(), 1..=3, &[]);
-    slopes(path.to_str().unwrap(), 2..=2, &["--set", "k=1/9"]);
-    let _ = std::fs::remove_file(path);
+    let folder = Folder::new("scaled");
+    let path = folder.problem("x'' + k x = eps (1 - x^2) x'", &[("k", "9/4")], "");
+    slopes(&path, 1..=3, &[]);
+    slopes(&path, 2..=2, &["--set", "k=1/9"]);
 }
 
 #[test]
 fn text_and_figure() {
-    let folder = std::env::temp_dir();
-    let path = folder.join(format!("lindstedt-verify-{}.svg", std::process::id()));
-    let output = run(&["duffing", "--order", "1", "--plot", path.to_str().unwrap()]);
+    let folder = Folder::new("figure");
+    let output = run(&["duffing", "--order", "1", "--plot", &folder.path("x.svg")]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.starts_with("duffing: order 1, 1 periods, integration with"), "{text}");
     assert_eq!(text.lines().count(), 9, "{text}");
-    let drawn = std::fs::read_to_string(&path).unwrap();
+    let drawn = folder.text("x.svg");
     assert!(drawn.matches("<circle").count() >= 4 && drawn.contains("slope 2"));
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]

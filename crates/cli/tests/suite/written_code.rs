@@ -1,5 +1,6 @@
 //! What `evaluate --code` writes is compiled and run, and held against `evaluate`.
 
+use crate::program::{self, Folder};
 use serde_json::Value;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -62,12 +63,8 @@ fn main() {
 ];
 
 fn json(arguments: &[&str]) -> Value {
-    let program = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-        .args(["evaluate", "--quiet", "--format", "json", "--order", "12", "--digits", "15"])
-        .args(arguments)
-        .output()
-        .unwrap();
-    serde_json::from_slice(&program.stdout).unwrap()
+    let start = ["evaluate", "--quiet", "--order", "12", "--digits", "15"];
+    program::json(&[&start[..], arguments].concat())
 }
 
 /// The output of a tool; nothing where this machine has it not.
@@ -114,8 +111,7 @@ fn number(value: &Value) -> f64 {
 /// Cosines and sines of a limit cycle: every language gives what `evaluate` gives, up to the deviation stated.
 #[test]
 fn every_language_gives_what_evaluate_gives() {
-    let folder = std::env::temp_dir().join(format!("lindstedt-code-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = Folder::new("code");
     let cycle = ["van-der-pol", "--set", "eps=1/5", "--harmonics", "9"];
     let found = json(&[&cycle[..], &["--times", "0..6:4"]].concat());
     let expected = found["solution"]["values"].as_array().unwrap();
@@ -123,7 +119,7 @@ fn every_language_gives_what_evaluate_gives() {
     for language in ["python", "c", "rust"] {
         let written = json(&[&cycle[..], &["--code", language]].concat());
         let Some(x) =
-            printed(&folder, language, written["code"].as_str().unwrap(), [PYTHON, C, RUST])
+            printed(&folder.0, language, written["code"].as_str().unwrap(), [PYTHON, C, RUST])
         else {
             continue;
         };
@@ -138,15 +134,13 @@ fn every_language_gives_what_evaluate_gives() {
         }
     }
     assert!(run > 0, "no tool on this machine");
-    let _ = std::fs::remove_dir_all(folder);
 }
 
 /// Functions of time, the small parameter and the amplitude: where the last term is below rounding, `evaluate` with the closed
 /// form of the period gives the same.
 #[test]
 fn functions_of_parameters_give_what_evaluate_gives() {
-    let folder = std::env::temp_dir().join(format!("lindstedt-functions-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = Folder::new("functions");
     let at = |amplitude: &str, times: &str| {
         let set = format!("amplitude={amplitude}");
         let found = json(&["duffing", "--set", "eps=1/20", "--set", &set, "--times", times]);
@@ -159,7 +153,7 @@ fn functions_of_parameters_give_what_evaluate_gives() {
         let written = json(&["duffing", "--harmonics", "25", "--functions", "--code", language]);
         assert_eq!(written["parameters"], serde_json::json!(["eps", "amplitude"]));
         let code = written["code"].as_str().unwrap();
-        let Some(x) = printed(&folder, language, code, OF_PARAMETERS) else { continue };
+        let Some(x) = printed(&folder.0, language, code, OF_PARAMETERS) else { continue };
         run += 1;
         assert_eq!(x.len(), 4, "{language}");
         for (place, (x, expected)) in x.iter().zip(&expected).enumerate() {
@@ -169,5 +163,4 @@ fn functions_of_parameters_give_what_evaluate_gives() {
         }
     }
     assert!(run > 0, "no tool on this machine");
-    let _ = std::fs::remove_dir_all(folder);
 }

@@ -67,6 +67,7 @@ fn reference_flows() {
         ("internal_1_2", "x1'' + x1 + eps*2*x1*x2; x2'' + 4*x2 + eps*(s*x2 + x1^2)".to_owned()),
         ("van_der_pol_forced", "x'' + x + eps*(s*x - (1 - x^2)*x') = eps*F*cos(t)".to_owned()),
     ];
+    assert_eq!(data["cases"].as_object().unwrap().len(), cases.len());
     let number = |v: &serde_json::Value| v.as_str().unwrap().parse::<Rational>().unwrap();
     for (name, equation) in cases {
         let found = flow(&equation, 3, &[]);

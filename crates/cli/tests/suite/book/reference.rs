@@ -1,7 +1,8 @@
 //! The reference is complete and current: every error code, every option, every formula; the
 //! examples give the known numbers.
 
-use super::{Outcome, blocks, first_missing, pages, root};
+use super::{Outcome, blocks, first_missing, pages};
+use crate::program::{self, root, words};
 use lindstedt_tests::examples::example;
 use lindstedt_tests::mathematics;
 use std::collections::BTreeSet;
@@ -88,9 +89,7 @@ fn every_error_code_is_documented() -> Outcome {
 /// The page of options, from what the program says of itself.
 fn options_page() -> Result<String, Box<dyn Error>> {
     let help = |arguments: &[&str]| -> Result<String, Box<dyn Error>> {
-        let output =
-            Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).arg("--help").output()?;
-        let text = String::from_utf8(output.stdout)?;
+        let text = program::text(&[arguments, &["--help"]].concat());
         let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
         Ok(lines.join("\n"))
     };
@@ -166,12 +165,8 @@ fn every_json_key_is_documented() -> Outcome {
         let json = if command == "paper --quick" {
             std::fs::read(crate::browser::folder()?.join("report.json"))?
         } else {
-            let arguments = command.split_whitespace().chain(["--format", "json", "--quiet"]);
-            Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-                .args(arguments)
-                .current_dir(root())
-                .output()?
-                .stdout
+            let arguments = [&words(command)[..], &["--format", "json", "--quiet"]].concat();
+            program::command(&arguments).current_dir(root()).output()?.stdout
         };
         let value: serde_json::Value = serde_json::from_slice(&json)?;
         for key in value.as_object().ok_or("no object")?.keys() {

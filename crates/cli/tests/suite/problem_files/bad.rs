@@ -1,7 +1,7 @@
 //! A hundred problem files that are wrong, or that a method does not take: one clear line each, and the exit
 //! code.
 
-use super::{Folder, lindstedt, text};
+use crate::program::{Folder, lindstedt, text};
 use serde_json::Value;
 use std::process::{Command, Output};
 
@@ -344,7 +344,7 @@ fn averaging_takes_what_its_hint_is_given_for() {
     let folder = Folder::new("averaged");
     let file = |equation: &str, condition: &str| {
         let content = with_parameters(equation).replace("initial-amplitude", condition);
-        folder.file("averaged.toml", content.as_bytes())
+        folder.file("averaged.toml", content)
     };
     let hint =
         "(averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free)";
@@ -389,7 +389,7 @@ fn averaging_takes_what_its_hint_is_given_for() {
     let open = |condition: &str| {
         let content =
             with_parameters(equation).replace("initial-amplitude", condition) + "q = {}\n";
-        folder.file("open.toml", content.as_bytes())
+        folder.file("open.toml", content)
     };
     let error = refused(&open("limit-cycle"), "derive");
     assert!(error.contains("2:13: x' occurs and omega_0 has no value (--set"), "{error}");

@@ -1,6 +1,7 @@
 //! Sections, sweeps and bifurcation diagrams of `simulate`.
 
-use super::{command, file, float, json, run};
+use super::{command, json, run};
+use crate::program::{Folder, float};
 use serde_json::Value;
 use std::process::Stdio;
 use std::time::Duration;
@@ -10,34 +11,31 @@ use std::time::Duration;
 fn a_killed_diagram_goes_on() {
     let sweep =
         ["stick-slip", "--sweep", "gamma=0.58..0.66:60", "--skip", "150", "--periods", "60"];
-    let go = |name: &str, kill: bool| -> [Vec<u8>; 3] {
-        let paths = ["dat", "csv", "svg"].map(|kind| file(&format!("{name}.{kind}")));
-        let [resume, csv, svg] = paths.each_ref().map(|p| p.to_str().unwrap());
+    let go = |kill: bool| -> [Vec<u8>; 3] {
+        let folder = Folder::new("diagram");
+        let paths = ["x.dat", "x.csv", "x.svg"].map(|name| folder.path(name));
+        let [resume, csv, svg] = paths.each_ref().map(String::as_str);
         let all = [&sweep[..], &["--resume", resume, "--plot", csv, "--plot", svg]].concat();
         if kill {
             let mut child =
                 command(&all).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
             // As soon as some values are there.
-            let lines = || std::fs::read_to_string(&paths[0]).map_or(0, |t| t.lines().count());
+            let lines = || folder.text("x.dat").lines().count();
             while lines() < 5 && child.try_wait().unwrap().is_none() {
                 std::thread::sleep(Duration::from_millis(2));
             }
             child.kill().unwrap();
             child.wait().unwrap();
-            assert!(!paths[2].exists() && lines() < 62, "killed too late");
+            assert!(folder.text("x.svg").is_empty() && lines() < 62, "killed too late");
             // A line that was cut in the middle.
             let mut torn = std::fs::read(&paths[0]).unwrap();
             torn.truncate(torn.len() - 7);
             std::fs::write(&paths[0], torn).unwrap();
         }
         assert!(command(&all).output().unwrap().status.success());
-        paths.map(|path| {
-            let bytes = std::fs::read(&path).unwrap();
-            let _ = std::fs::remove_file(path);
-            bytes
-        })
+        paths.map(|path| std::fs::read(path).unwrap())
     };
-    let (whole, resumed) = (go("whole", false), go("killed", true));
+    let (whole, resumed) = (go(false), go(true));
     assert!(whole[1..] == resumed[1..]);
     // But for the command, which names the files.
     let lines = |files: &[Vec<u8>; 3]| -> Vec<String> {
@@ -74,15 +72,14 @@ fn a_diagram_doubles_its_period() {
 
 #[test]
 fn values_of_a_sweep_are_exact() {
-    let path = file("exact.csv");
+    let folder = Folder::new("exact");
     let sweep = ["stick-slip", "--sweep", "gamma=0.5..0.8:10", "--skip", "0", "--periods", "1"];
-    let found = json(&[&sweep[..], &["--plot", path.to_str().unwrap()]].concat());
+    let found = json(&[&sweep[..], &["--plot", &folder.path("x.csv")]].concat());
     let columns = found["sweep"]["columns"].as_array().unwrap();
     let exact: Vec<&str> = columns.iter().map(|c| c["exact"].as_str().unwrap()).collect();
     assert_eq!(exact[..4], ["0.5", "8/15", "17/30", "0.6"]);
-    let table = std::fs::read_to_string(&path).unwrap();
+    let table = folder.text("x.csv");
     assert!(table.contains("\n0.6,") && table.contains("\n0.5666666666666667,"));
-    let _ = std::fs::remove_file(path);
 }
 
 /// The end is the last time asked for where no other is given; `--skip` leaves out the first points.
@@ -135,11 +132,10 @@ fn a_column_is_the_section_of_one_motion() {
 /// the impacts add up at 19 sqrt 2.
 #[test]
 fn a_ball_is_seen_between_its_impacts() {
-    let path = std::env::temp_dir().join(format!("lindstedt-{}-ball.toml", std::process::id()));
+    let folder = Folder::new("ball");
     let wall = "[impact]\nposition = \"0\"\ncrossing = \"falling\"\nrestitution = \"9/10\"\n";
-    let file = format!("name = \"ball\"\nequation = \"x'' = -1\"\ncondition = []\n{wall}");
-    std::fs::write(&path, file).unwrap();
-    let ball = [path.to_str().unwrap(), "--state", "1,0", "--digits", "10"];
+    let path = folder.problem("x'' = -1", &[], &format!("condition = []\n{wall}"));
+    let ball = [&path, "--state", "1,0", "--digits", "10"];
     let found = json(&[&ball[..], &["--until", "30", "--times", "3..3:1"]].concat());
     // The first flight after the impact at sqrt 2 with velocity 9/10 sqrt 2.
     let t = 3.0 - 2f64.sqrt();

@@ -1,42 +1,22 @@
-//! Text, charts, tables, warnings.
+//! Charts, tables, warnings.
 
 use super::{json, run};
+use crate::program::Folder;
 
 const O5: [&str; 10] =
     ["--set", "omega=3.3", "--set", "k=2", "--set", "R_r=0.8", "--set", "s=0", "--set", "c=0.05"];
 
-#[test]
-fn text_of_one_point() {
-    let output = run(&[&O5[..], &["--set", "A=0.2", "--digits", "20"]].concat());
-    assert!(output.status.success());
-    let text = String::from_utf8(output.stdout).unwrap();
-    // All but the doubles, whose last digits are those of the machine.
-    let mut blocks: Vec<&str> = text.split("\n\n").collect();
-    // A title, and four headings with their lines.
-    assert_eq!(blocks.len(), 5, "{text}");
-    let estimated = blocks.iter().position(|block| block.starts_with("Averaging that knows"));
-    let estimated: Vec<&str> = blocks.drain(estimated.unwrap()..).collect();
-    let (estimated, certain) = estimated.split_at(1);
-    let stable = estimated[0].lines().find(|line| line.starts_with("  stable")).unwrap();
-    assert!(stable.ends_with("no"), "{stable}");
-    blocks.extend(certain);
-    insta::assert_snapshot!(blocks.join("\n\n"));
-}
-
 /// A chart as figure, table and JSON: the same verdicts, which are those of the single points.
 #[test]
 fn chart_in_three_forms() {
-    let name = |kind: &str| {
-        let folder = std::env::temp_dir();
-        folder.join(format!("lindstedt-stability-{}.{kind}", std::process::id()))
-    };
-    let (svg, csv) = (name("svg"), name("csv"));
+    let folder = Folder::new("chart");
+    let (svg, csv) = (folder.path("x.svg"), folder.path("x.csv"));
     let sweeps = ["--set", "A=0.2", "--sweep", "A=-0.3..0.3:13", "--sweep", "B=-0.3..0.3:7"];
-    let plots = ["--plot", svg.to_str().unwrap(), "--plot", csv.to_str().unwrap()];
+    let plots = ["--plot", &svg, "--plot", &csv];
     let found = json(&[&O5[..], &sweeps[..], &plots[..]].concat());
     let grid = &found["grid"];
     assert_eq!((&grid["finished"], &grid["columns"]["name"]), (&true.into(), &"A".into()));
-    let table = std::fs::read_to_string(&csv).unwrap();
+    let table = folder.text("x.csv");
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("A,B,kbm,exact"));
     let word = |verdict: &serde_json::Value| match verdict.as_bool() {
@@ -70,7 +50,7 @@ fn chart_in_three_forms() {
         (&compared.into(), &equal.into())
     );
     assert!(0 < equal && equal < compared);
-    let drawn = std::fs::read_to_string(&svg).unwrap();
+    let drawn = folder.text("x.svg");
     for words in [
         "predicted stable, IS UNSTABLE",
         "predicted unstable, is unstable",
@@ -81,7 +61,6 @@ fn chart_in_three_forms() {
         assert!(drawn.contains(words), "{words}");
     }
     assert!(drawn.trim_end().ends_with("</svg>"));
-    let _ = (std::fs::remove_file(svg), std::fs::remove_file(csv));
 }
 
 #[test]

@@ -1,20 +1,12 @@
-//! The reference cases: every number printed, certified to 25 digits and in doubles to 12.
+//! Two reference cases as they are printed, certified to 25 digits and in doubles to 12; all eight are those of
+//! the tests of `impact`.
 
 use super::{data, json, point};
 use rug::ops::Pow;
 use rug::{Float, Rational};
 use serde_json::Value;
 
-const CASES: [&str; 8] = [
-    "O1_A",
-    "O2_k2_stabilised",
-    "O5_false_stable",
-    "O8_saddle",
-    "k5",
-    "near_grazing",
-    "plastic",
-    "uncontrolled",
-];
+const CASES: [&str; 2] = ["O1_A", "near_grazing"];
 
 fn decimal(text: &str) -> Rational {
     let float = Float::with_val(1000, Float::parse(text).unwrap());
