@@ -89,7 +89,7 @@ impl Branch<'_, '_> {
         let (mut point, mut tangency) =
             (Point { value: near.value, phase: near.phase, saddle: near.saddle.state }, None);
         // Far from the prediction: another branch.
-        if !self.known.is_empty() && (near.value - value).abs() >= 0.02 * value.abs() {
+        if !self.known.is_empty() && (near.value - value).abs() >= 0.01 * value.abs() {
             return Err(SimulateError::NoTangency { value });
         }
         if asked {
@@ -98,8 +98,11 @@ impl Branch<'_, '_> {
             tangency = Some(found);
         }
         if phase.is_none() {
-            // The phases jump here: those before are told from here on, for the next prediction.
+            // Counted from another turn, or the phases jump: those before are told from here on, for the next
+            // prediction.
             let jump = point.phase - predicted.phase;
+            let turns = jump.round();
+            let jump = if (jump - turns).abs() < 0.1 { turns } else { jump };
             self.known.iter_mut().for_each(|(_, known)| known.phase += jump);
         }
         if self.known.last().is_some_and(|last| last.0 == target) {
