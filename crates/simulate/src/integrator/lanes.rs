@@ -219,11 +219,7 @@ impl Group {
         arch.dispatch(Levels { group: self, time, modes: &modes });
         for (lane, flow) in flows.iter_mut().enumerate() {
             let Some(flow) = flow else { continue };
-            let rows = &mut flow.series.rows;
-            for row in &self.read {
-                let own = self.rows.row(*row).iter().map(|lanes| lanes[lane]);
-                rows.row_mut(*row).iter_mut().zip(own).for_each(|(to, x)| *to = x);
-            }
+            flow.series.take(&self.read, |row| self.rows.row(row).iter().map(|lanes| lanes[lane]));
             flow.expanded = true;
         }
     }
