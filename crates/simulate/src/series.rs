@@ -287,8 +287,13 @@ impl<R: Real> Series<R> {
         // Rounding errors of some hundred operations on the largest term are no defect either.
         let terms = system.tape.ops.iter().zip(system.tape.states..);
         let terms = terms.filter(|(op, _)| !matches!(op, Op::Constant(_) | Op::Time));
-        let largest = terms.map(|(_, row)| real.log2(self.probe.at(row, 0)));
-        let largest = largest.fold(scale - real.log2(h), f64::max);
+        let terms = terms.map(|(_, row)| self.probe.at(row, 0));
+        let mut largest = real.log2_of_largest(terms.clone());
+        if largest.is_nan() {
+            // Of those that are finite.
+            largest = terms.map(|term| real.log2(term)).fold(f64::NEG_INFINITY, f64::max);
+        }
+        let largest = largest.max(scale - real.log2(h));
         worst <= largest + 7.0 - f64::from(real.bits())
     }
 
