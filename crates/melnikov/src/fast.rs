@@ -251,16 +251,22 @@ impl Terms {
     }
 
     /// gamma; the smaller it is the less it is worth, see [`is_certain`].
+    #[inline(always)]
+    pub(crate) fn value(&self) -> f64 {
+        self.factor * self.bracket()
+    }
+
+    /// gamma without the factor.
     ///
     /// 1 - |v*|/V is ((V - |v*|) + V_low)/V: the difference is exact near |v*| = V, where it cancels.
     #[inline(always)]
-    pub(crate) fn value(&self) -> f64 {
+    pub(crate) fn bracket(&self) -> f64 {
         let LoopSpeed { high, low, inverse } = self.speed;
         let gap = ((high - self.belt.abs()) + low) * inverse;
         let gap = if gap > 0.0 { gap } else { 0.0 };
         let dry = self.dry * gap.sqrt();
         let smooth = self.mixed * (self.belt * self.belt) + self.cubic;
-        self.factor * ((dry - self.linear) + smooth)
+        (dry - self.linear) + smooth
     }
 }
 

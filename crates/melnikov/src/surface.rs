@@ -46,11 +46,17 @@ struct Columns<'a> {
     /// V and the factor of every column, where they depend on it and not on the row.
     speeds: Vec<LoopSpeed>,
     factors: Vec<f64>,
+    /// All but the factor, where only the factor depends on the row.
+    brackets: Vec<f64>,
 }
 
 /// The factor, or 0, which is no certain value, where it is far from 1.
 fn plain_factor(p: &FastPoint) -> f64 {
     forcing_factor(p.a, p.omega).moderate().unwrap_or(0.0)
+}
+
+fn each_product(line: &mut [f64], factors: &[f64], factor: f64) {
+    line.iter_mut().zip(factors).for_each(|(y, x)| *y = factor * x);
 }
 
 impl<'a> Columns<'a> {
@@ -61,12 +67,17 @@ impl<'a> Columns<'a> {
             Axis::A | Axis::B | Axis::Omega => values.iter().all(|&x| is_near_one(x)),
             _ => values.iter().all(|&x| is_moderate(x)),
         };
-        let mut columns = Self { axis, values, moderate, speeds: Vec::new(), factors: Vec::new() };
+        let (speeds, factors, brackets) = Default::default();
+        let mut columns = Self { axis, values, moderate, speeds, factors, brackets };
         if moderate && free([Axis::A, Axis::B]) {
             columns.speeds = values.iter().map(at).map(|p| LoopSpeed::new(p.a, p.b)).collect();
         }
         if moderate && free([Axis::A, Axis::Omega]) {
             columns.factors = values.iter().map(at).map(|p| plain_factor(&p)).collect();
+        }
+        if moderate && row == Axis::Omega && !matches!(axis, Axis::A | Axis::Omega) {
+            let bracket = |p: FastPoint| Terms::new(&p, LoopSpeed::new(p.a, p.b), 1.0).bracket();
+            columns.brackets = values.iter().map(at).map(bracket).collect();
         }
         columns
     }
@@ -80,6 +91,12 @@ impl<'a> Columns<'a> {
         let own = Terms::new(&first, LoopSpeed::new(first.a, first.b), plain_factor(&first));
         let each = line.iter_mut().zip(self.values);
         match self.axis {
+            _ if !self.brackets.is_empty() => {
+                each_product(line, &self.brackets, own.factor);
+            }
+            Axis::Omega if !self.factors.is_empty() => {
+                each_product(line, &self.factors, own.bracket());
+            }
             Axis::BeltSpeed => each.for_each(|(y, &x)| *y = Terms { belt: x, ..own }.value()),
             Axis::Dry => each.for_each(|(y, &x)| *y = Terms { dry: 2.0 * x, ..own }.value()),
             Axis::Alpha => {

@@ -149,11 +149,7 @@ pub fn diagram<R: Real>(
         } else {
             let groups: Vec<_> = indices.clone().step_by(R::LANES).collect();
             let group = |first: usize| {
-                let own = first..indices.end.min(first + R::LANES);
-                together(sweep, real, settings, own.clone(), tick).unwrap_or_else(|| {
-                    let start = &settings.start;
-                    own.map(|index| column(sweep, real, settings, start, index, tick)).collect()
-                })
+                several(sweep, real, settings, first..indices.end.min(first + R::LANES), tick)
             };
             let parallel = groups.into_par_iter().with_max_len(1);
             parallel.map(group).collect::<Vec<_>>().into_iter().flatten().collect()
@@ -257,6 +253,25 @@ impl<R: Real> Run<'_, R> {
         }
         self.target = None;
     }
+}
+
+/// Some columns, side by side as many as can be: a value that equals another constant makes other recurrences.
+fn several<R: Real>(
+    sweep: &Sweep<'_>,
+    real: &R,
+    settings: &DiagramSettings<R::Element>,
+    indices: Range<usize>,
+    tick: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Vec<Option<Column<R::Element>>> {
+    if indices.len() < 2 {
+        let start = &settings.start;
+        return indices.map(|index| column(sweep, real, settings, start, index, tick)).collect();
+    }
+    together(sweep, real, settings, indices.clone(), tick).unwrap_or_else(|| {
+        let middle = indices.start + indices.len() / 2;
+        let half = |indices| several(sweep, real, settings, indices, tick);
+        [half(indices.start..middle), half(middle..indices.end)].concat()
+    })
 }
 
 /// Some columns side by side; nothing where that cannot be.

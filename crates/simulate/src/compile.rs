@@ -61,6 +61,7 @@ impl<'a, R: Real> Compiler<'a, R> {
                 live: Vec::new(),
                 curved: Vec::new(),
                 needed: Vec::new(),
+                first: Vec::new(),
                 steps: Vec::new(),
                 constants: Vec::new(),
             },

@@ -507,9 +507,7 @@ impl<'s, R: Real> Integrator<'s, R> {
     /// Moves the state to start + h.
     pub(crate) fn move_by(&mut self, h: &R::Element) {
         let real = &self.system.real;
-        for state in 0..self.state.len() {
-            self.state[state] = self.series.value(real, state, h);
-        }
+        self.series.states_at(real, &mut self.state, h);
         self.clock.advance(real, h);
     }
 

@@ -84,7 +84,9 @@ pub use integrator::real::{Doubles, Real};
 pub use integrator::{Integrator, Next, Observer, Settings, Tick, Together, go_on};
 pub use keeper::{Cut, Flow, Plan};
 pub use linear::{Monodromy, monodromy, monodromy_while};
-pub use lyapunov::{LyapunovExponent, LyapunovSettings, largest_lyapunov_exponent};
+pub use lyapunov::{
+    LyapunovExponent, LyapunovSettings, largest_lyapunov_exponent, largest_lyapunov_exponents,
+};
 pub use poincare::{PoincareMap, Point, Section};
 pub use quantity::{Parameters, Quantity};
 

@@ -2,7 +2,7 @@
 
 use crate::error::SimulateError;
 use crate::integrator::real::Real;
-use crate::integrator::{Integrator, Settings};
+use crate::integrator::{Integrator, Next, Settings, Together, go_on};
 use crate::system::System;
 use std::ops::ControlFlow;
 
@@ -63,44 +63,131 @@ pub fn largest_lyapunov_exponent<R: Real>(
     settings: &LyapunovSettings<R::Element>,
     observer: &mut dyn FnMut(u32) -> ControlFlow<()>,
 ) -> Result<Option<LyapunovExponent>, SimulateError> {
-    let n = system.variables;
-    if system.directions() != n {
-        let given = system.directions();
-        return Err(SimulateError::WrongDimension { states: n, given });
+    let found = largest_lyapunov_exponents(&[system], time, state, settings, observer).pop();
+    found.unwrap_or(Ok(None))
+}
+
+/// [`largest_lyapunov_exponent`] of several systems from one start, in order; in doubles those that differ in their
+/// numbers alone are followed side by side, with the exponents that each has alone.
+pub fn largest_lyapunov_exponents<R: Real>(
+    systems: &[&System<R>],
+    time: &R::Element,
+    state: &[R::Element],
+    settings: &LyapunovSettings<R::Element>,
+    observer: &mut dyn FnMut(u32) -> ControlFlow<()>,
+) -> Vec<Result<Option<LyapunovExponent>, SimulateError>> {
+    let mut all: Vec<_> =
+        systems.iter().map(|system| Growth::new(*system, time, state, settings)).collect();
+    let mut stopped = false;
+    for lanes in all.chunks_mut(R::LANES) {
+        let mut running: Vec<_> = lanes.iter_mut().filter_map(|one| one.as_mut().ok()).collect();
+        let flows: Vec<_> = running.iter().map(|one| &one.flow).collect();
+        let mut group = R::together(&flows);
+        for interval in 1..=settings.transient.saturating_add(settings.averaged) {
+            running.retain(|one| one.ended.is_none());
+            if running.is_empty() || stopped {
+                break;
+            }
+            let mut target = settings.interval.clone();
+            let real = &running[0].flow.system.real;
+            real.times_integer(&mut target, interval as i32);
+            let target = real.sum(time, &target);
+            let mut flows: Vec<_> = running.iter_mut().map(|one| &mut one.flow).collect();
+            let told = advance_all(&mut flows, group.as_deref_mut(), &target);
+            for (one, told) in running.iter_mut().zip(told) {
+                one.hear(told, interval > settings.transient);
+            }
+            stopped = observer(interval).is_break();
+        }
     }
-    let real = &system.real;
-    let mut flow = Integrator::new(system, time, state, settings.integration)?;
-    let (mut growths, mut left) = (Vec::new(), 0.0);
-    for interval in 1..=settings.transient.saturating_add(settings.averaged) {
-        let mut target = settings.interval.clone();
-        real.times_integer(&mut target, interval as i32);
-        flow.advance(&real.sum(time, &target), &mut |_| ControlFlow::Continue(()))?;
-        let growth = flow.normalise_directions(&mut left);
+    let interval = |system: &System<R>| system.real.to_f64(&settings.interval);
+    let exponent = |(one, system): (Result<Growth<'_, R>, _>, &&System<R>)| match one? {
+        Growth { ended: Some(ended), .. } => ended,
+        _ if stopped => Ok(None),
+        one => one.exponent(interval(system)),
+    };
+    all.into_iter().zip(systems).map(exponent).collect()
+}
+
+/// Every integration to the target, side by side where they are a group.
+fn advance_all<R: Real>(
+    flows: &mut [&mut Integrator<'_, R>],
+    group: Option<&mut (dyn Together<R> + '_)>,
+    target: &R::Element,
+) -> Vec<Result<(), SimulateError>> {
+    let Some(group) = group else {
+        return flows.iter_mut().map(|flow| flow.advance_while(target, &go_on)).collect();
+    };
+    let mut told = vec![None; flows.len()];
+    while told.iter().any(Option::is_none) {
+        let aim = |told: &Option<_>| told.is_none().then(|| target.clone());
+        let mut pairs: Vec<_> =
+            flows.iter_mut().zip(&told).map(|(flow, told)| (&mut **flow, aim(told))).collect();
+        for (told, next) in told.iter_mut().zip(group.round(&mut pairs, &go_on)) {
+            match next {
+                Ok(Next::Idle | Next::Moved) => {}
+                Ok(Next::Reached) => *told = Some(Ok(())),
+                Ok(Next::Stopped) => *told = Some(Err(SimulateError::Stopped)),
+                Err(error) => *told = Some(Err(error)),
+            }
+        }
+    }
+    told.into_iter().flatten().collect()
+}
+
+/// One solution with its directions.
+struct Growth<'s, R: Real> {
+    flow: Integrator<'s, R>,
+    growths: Vec<f64>,
+    left: f64,
+    ended: Option<Result<Option<LyapunovExponent>, SimulateError>>,
+}
+
+impl<'s, R: Real> Growth<'s, R> {
+    fn new(
+        system: &'s System<R>,
+        time: &R::Element,
+        state: &[R::Element],
+        settings: &LyapunovSettings<R::Element>,
+    ) -> Result<Self, SimulateError> {
+        let n = system.variables;
+        if system.directions() != n {
+            let given = system.directions();
+            return Err(SimulateError::WrongDimension { states: n, given });
+        }
+        let flow = Integrator::new(system, time, state, settings.integration)?;
+        Ok(Self { flow, growths: Vec::new(), left: 0.0, ended: None })
+    }
+
+    /// The end of an interval.
+    fn hear(&mut self, told: Result<(), SimulateError>, counts: bool) {
+        if let Err(error) = told {
+            self.ended = Some(Err(error));
+            return;
+        }
+        let growth = self.flow.normalise_directions(&mut self.left);
         if growth == f64::NEG_INFINITY {
             // All directions are zero, for good.
-            return Ok(Some(LyapunovExponent { value: growth, error: 0.0 }));
+            self.ended = Some(Ok(Some(LyapunovExponent { value: growth, error: 0.0 })));
+        } else if !growth.is_finite() {
+            self.ended = Some(Err(SimulateError::NotFinite { time: self.flow.seconds() }));
+        } else if counts {
+            self.growths.push(growth);
         }
-        if !growth.is_finite() {
-            return Err(SimulateError::NotFinite { time: flow.seconds() });
-        }
-        if interval > settings.transient {
-            growths.push(growth);
-        }
-        if observer(interval).is_break() {
+    }
+
+    fn exponent(&self, interval: f64) -> Result<Option<LyapunovExponent>, SimulateError> {
+        if self.growths.is_empty() {
             return Ok(None);
         }
-    }
-    if growths.is_empty() {
-        return Ok(None);
-    }
-    let (value, error) = mean(&growths);
-    let error = error.max(wandering(&growths, value));
-    let interval = real.to_f64(&settings.interval);
-    let (value, error) = (value / interval, error / interval);
-    if value.is_finite() && !error.is_nan() {
-        Ok(Some(LyapunovExponent { value, error }))
-    } else {
-        Err(SimulateError::NotFinite { time: flow.seconds() })
+        let (value, error) = mean(&self.growths);
+        let error = error.max(wandering(&self.growths, value));
+        let (value, error) = (value / interval, error / interval);
+        if value.is_finite() && !error.is_nan() {
+            Ok(Some(LyapunovExponent { value, error }))
+        } else {
+            Err(SimulateError::NotFinite { time: self.flow.seconds() })
+        }
     }
 }
 

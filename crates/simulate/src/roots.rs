@@ -124,7 +124,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
         self.found = kept;
     }
 
-    /// c_k length^k into `scaled`; whether |c_0| outweighs all other terms.
+    /// c_k length^k into `scaled`; whether c_0 + c_1 u, 0 <= u <= 1, outweighs all other terms.
     fn excluded<R: Real<Element = E>>(&mut self, real: &R, c: &[E], length: &E) -> bool {
         self.scaled.resize_with(c.len(), || real.zero());
         let mut power = real.double(1.0);
@@ -132,7 +132,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
         for (k, (scaled, c)) in self.scaled.iter_mut().zip(c).enumerate() {
             real.multiply(scaled, c, &power);
             real.scale(&mut power, length);
-            if k > 0 {
+            if k > 1 {
                 if real.sign(scaled) < 0 {
                     real.times_integer(scaled, -1);
                     real.increase(&mut rest, scaled);
@@ -142,7 +142,11 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
                 }
             }
         }
-        self.scaled.first().is_none_or(|first| rest < real.absolute(first))
+        let Some(first) = self.scaled.first() else { return true };
+        let last = self.scaled.get(1).map_or_else(|| first.clone(), |c| real.sum(first, c));
+        real.sign(first) * real.sign(&last) > 0
+            && rest < real.absolute(first)
+            && rest < real.absolute(&last)
     }
 
     /// b_i = sum_{k<=i} C(i,k)/C(n,k) c_k, by n(n+1)/2 additions.

@@ -24,6 +24,10 @@ pub(crate) struct Series<R: Real> {
     pub(crate) rows: Rows<R::Element>,
     pub(crate) order: usize,
     probe: Rows<R::Element>,
+    /// x' - f there.
+    defects: Vec<R::Element>,
+    /// Where the states of the probe are those of the series.
+    probed: Option<R::Element>,
     sum: R::Element,
     scratch: R::Element,
 }
@@ -35,6 +39,8 @@ impl<R: Real> Series<R> {
             rows: Rows::new(system.tape.rows(), order + 1, &zero),
             order,
             probe: Rows::new(system.tape.rows(), 1, &zero),
+            defects: vec![zero.clone(); system.variables],
+            probed: None,
             sum: zero.clone(),
             scratch: zero,
         }
@@ -52,18 +58,25 @@ impl<R: Real> Series<R> {
         tick: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<(), SimulateError> {
         let asks = levels >= LONG;
+        self.probed = None;
         let sliding = phase.modes.iter().position(|mode| *mode == 0);
         let mut sensitivity = None;
         for n in 0..=levels {
             if asks && tick().is_break() {
                 return Err(SimulateError::Stopped);
             }
-            self.level(system, time, phase, n);
+            // Where it slides the levels below the last are found with their control.
+            let slides = sliding.filter(|_| phase.contact.is_none() && n < levels);
+            if slides.is_none() {
+                self.level(system, time, phase, n);
+            }
             if n == levels {
                 break;
             }
-            self.states(system, phase, n);
-            if let Some(switch) = sliding.filter(|_| phase.contact.is_none()) {
+            if slides.is_none() {
+                self.states(system, phase, n);
+            }
+            if let Some(switch) = slides {
                 let s = match sensitivity.take() {
                     Some(s) => s,
                     None => self.sensitivity(system, time, phase, switch)?,
@@ -76,6 +89,18 @@ impl<R: Real> Series<R> {
             self.set_control(system, switch, None, levels, &system.real.zero());
         }
         Ok(())
+    }
+
+    /// The coefficients of some rows from elsewhere.
+    pub(crate) fn take<I: Iterator<Item = R::Element>>(
+        &mut self,
+        rows: &[usize],
+        from: impl Fn(usize) -> I,
+    ) {
+        self.probed = None;
+        for row in rows {
+            self.rows.row_mut(*row).iter_mut().zip(from(*row)).for_each(|(to, x)| *to = x);
+        }
     }
 
     fn level(&mut self, system: &System<R>, time: &R::Element, phase: &Phase, n: usize) {
@@ -231,6 +256,7 @@ impl<R: Real> Series<R> {
         for state in 0..used {
             horner(real, self.probe.at_mut(state, 0), self.rows.row(state), h);
         }
+        self.probed = Some(h.clone());
         for (index, op) in system.tape.ops.iter().enumerate() {
             if matches!(op, Op::Delayed { .. } | Op::Control { .. }) {
                 let row = used + index;
@@ -240,19 +266,19 @@ impl<R: Real> Series<R> {
         let (sum, scratch) = (&mut self.sum, &mut self.scratch);
         let mut moment = Moment { time: end, modes: &phase.modes, sum, scratch };
         system.tape.level(real, &mut self.probe, 0, &mut moment);
-        let (mut worst, mut scale) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for state in 0..system.variables {
             self.derivative(real, state, h);
             let f = self.probe.at(system.right_sides[state], 0);
             real.subtract(&mut self.scratch, &self.sum, f);
-            let defect = real.log2(&self.scratch);
-            if defect.is_nan() {
-                return false;
-            }
-            worst = worst.max(defect);
-            scale = scale.max(real.log2(self.rows.at(state, 0)));
-            scale = scale.max(real.log2(self.rows.at(state, 1)) + real.log2(h));
+            real.set(&mut self.defects[state], &self.scratch);
         }
+        let worst = real.log2_of_largest(self.defects.iter());
+        if worst.is_nan() {
+            return false;
+        }
+        let n = system.variables;
+        let scale =
+            self.norm(real, 0..n, 0).max(self.norm(real, 0..n, 1) + real.log2(h));
         // The derivative's tail is p times that of the series.
         let factor = (self.order as f64).log2() + 3.0;
         if worst + real.log2(h) <= log2_tolerance + factor + scale {
@@ -261,8 +287,13 @@ impl<R: Real> Series<R> {
         // Rounding errors of some hundred operations on the largest term are no defect either.
         let terms = system.tape.ops.iter().zip(system.tape.states..);
         let terms = terms.filter(|(op, _)| !matches!(op, Op::Constant(_) | Op::Time));
-        let largest = terms.map(|(_, row)| real.log2(self.probe.at(row, 0)));
-        let largest = largest.fold(scale - real.log2(h), f64::max);
+        let terms = terms.map(|(_, row)| self.probe.at(row, 0));
+        let mut largest = real.log2_of_largest(terms.clone());
+        if largest.is_nan() {
+            // Of those that are finite.
+            largest = terms.map(|term| real.log2(term)).fold(f64::NEG_INFINITY, f64::max);
+        }
+        let largest = largest.max(scale - real.log2(h));
         worst <= largest + 7.0 - f64::from(real.bits())
     }
 
@@ -281,6 +312,18 @@ impl<R: Real> Series<R> {
     pub(crate) fn slope(&mut self, real: &R, row: usize, s: &R::Element) -> R::Element {
         self.derivative(real, row, s);
         self.sum.clone()
+    }
+
+    /// The states at s; those of the probe are not computed again.
+    pub(crate) fn states_at(&self, real: &R, states: &mut [R::Element], s: &R::Element) {
+        let probed = self.probed.as_ref() == Some(s);
+        for (row, state) in states.iter_mut().enumerate() {
+            if probed {
+                real.set(state, self.probe.at(row, 0));
+            } else {
+                horner(real, state, self.rows.row(row), s);
+            }
+        }
     }
 
     /// The value of a row at s.

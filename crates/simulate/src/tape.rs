@@ -87,7 +87,8 @@ pub(crate) struct Tape<E> {
     /// The operations that are needed, and those of them that are needed from level 2 on.
     pub(crate) live: Vec<usize>,
     pub(crate) curved: Vec<usize>,
-    /// These, sums of one degree in one pass.
+    /// What the first two levels do, and the others: sums of one degree in one pass.
+    pub(crate) first: Vec<Step<E>>,
     pub(crate) steps: Vec<Step<E>>,
     /// The rows that are read from outside.
     pub(crate) needed: Vec<usize>,
@@ -138,6 +139,7 @@ impl<E: Clone> Tape<E> {
     }
 
     /// Level `n` of all operations.
+    #[inline(always)]
     pub(crate) fn level<R: Arithmetic<Element = E>>(
         &self,
         real: &R,
@@ -146,13 +148,7 @@ impl<E: Clone> Tape<E> {
         moment: &mut Moment<'_, R>,
     ) {
         // Rows start as zeros: where nothing is written they remain so.
-        if n < 2 {
-            for index in &self.live {
-                self.operation(real, rows, *index, n, moment);
-            }
-            return;
-        }
-        for step in &self.steps {
+        for step in if n < 2 { &self.first } else { &self.steps } {
             match step {
                 Step::Operation(index) => self.operation(real, rows, *index, n, moment),
                 Step::Sum(row, sum) => {
@@ -167,6 +163,7 @@ impl<E: Clone> Tape<E> {
     pub(crate) fn restrict<R: Arithmetic<Element = E>>(&mut self, real: &R, needed: Vec<usize>) {
         self.live = self.cone(needed.clone());
         self.curved = self.live.iter().copied().filter(|index| !self.affine[*index]).collect();
+        self.first = self.live.iter().map(|index| Step::Operation(*index)).collect();
         self.steps = steps(real, self, &needed);
         self.needed = needed;
     }
@@ -187,6 +184,7 @@ impl<E: Clone> Tape<E> {
             affine: first.affine.clone(),
             live: Vec::new(),
             curved: Vec::new(),
+            first: Vec::new(),
             steps: Vec::new(),
             needed: Vec::new(),
             constants: (0..first.constants.len()).map(join).collect(),
@@ -214,8 +212,8 @@ impl<E: Clone> Tape<E> {
         (0..needed.len()).filter(|index| needed[*index]).collect()
     }
 
-    /// Level `n` of operation `index`.
-    #[inline]
+    /// Level `n` of operation `index`. Inlined, as all that it does, into what is compiled for wider vectors.
+    #[inline(always)]
     pub(crate) fn operation<R: Arithmetic<Element = E>>(
         &self,
         real: &R,
@@ -318,7 +316,7 @@ impl<E: Clone> Tape<E> {
 }
 
 /// sum_{j>0} j a_j b_{n-j}; one term if a is affine.
-#[inline]
+#[inline(always)]
 fn chain<R: Arithmetic>(
     real: &R,
     sum: &mut R::Element,

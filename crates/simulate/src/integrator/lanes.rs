@@ -35,89 +35,100 @@ impl Arithmetic for Lanes {
     type Element = Lane;
     type Mode = Lane;
 
+    #[inline(always)]
     fn slides(&self, _: Lane) -> bool {
         false
     }
+    #[inline(always)]
     fn leaps(&self, _: Lane) -> bool {
         false
     }
-    #[inline]
+    #[inline(always)]
     fn times_sign(&self, to: &mut Lane, mode: Lane) {
         self.scale(to, &mode);
     }
+    #[inline(always)]
     fn is_zero(&self, _: &Lane) -> bool {
         false
     }
+    #[inline(always)]
     fn zero(&self) -> Lane {
         [0.0; LANES]
     }
+    #[inline(always)]
     fn double(&self, x: f64) -> Lane {
         [x; LANES]
     }
+    #[inline(always)]
     fn negative(&self, a: &Lane) -> Lane {
         a.map(|a| -a)
     }
-    #[inline]
+    #[inline(always)]
     fn set(&self, to: &mut Lane, x: &Lane) {
         *to = *x;
     }
-    #[inline]
+    #[inline(always)]
     fn set_zero(&self, to: &mut Lane) {
         *to = [0.0; LANES];
     }
-    #[inline]
+    #[inline(always)]
     fn add(&self, to: &mut Lane, a: &Lane, b: &Lane) {
         *to = each(|l| a[l] + b[l]);
     }
-    #[inline]
+    #[inline(always)]
     fn subtract(&self, to: &mut Lane, a: &Lane, b: &Lane) {
         *to = each(|l| a[l] - b[l]);
     }
-    #[inline]
+    #[inline(always)]
     fn multiply(&self, to: &mut Lane, a: &Lane, b: &Lane) {
         *to = each(|l| a[l] * b[l]);
     }
-    #[inline]
+    #[inline(always)]
     fn divide(&self, to: &mut Lane, a: &Lane, b: &Lane) {
         *to = each(|l| a[l] / b[l]);
     }
-    #[inline]
+    #[inline(always)]
     fn increase(&self, to: &mut Lane, a: &Lane) {
         *to = each(|l| to[l] + a[l]);
     }
-    #[inline]
+    #[inline(always)]
     fn accumulate(&self, to: &mut Lane, a: &Lane, b: &Lane) {
         add_product(to, a, b);
     }
-    #[inline]
+    #[inline(always)]
     fn scale(&self, to: &mut Lane, a: &Lane) {
         *to = each(|l| to[l] * a[l]);
     }
-    #[inline]
+    #[inline(always)]
     fn times_integer(&self, to: &mut Lane, n: i32) {
         *to = to.map(|x| x * f64::from(n));
     }
-    #[inline]
+    #[inline(always)]
     fn over_integer(&self, to: &mut Lane, n: u32) {
         *to = to.map(|x| x / f64::from(n));
     }
+    #[inline(always)]
     fn exp(&self, to: &mut Lane, x: &Lane) {
         *to = x.map(f64::exp);
     }
+    #[inline(always)]
     fn ln(&self, to: &mut Lane, x: &Lane) {
         *to = x.map(f64::ln);
     }
+    #[inline(always)]
     fn sin(&self, to: &mut Lane, x: &Lane) {
         *to = x.map(f64::sin);
     }
+    #[inline(always)]
     fn cos(&self, to: &mut Lane, x: &Lane) {
         *to = x.map(f64::cos);
     }
+    #[inline(always)]
     fn power(&self, to: &mut Lane, x: &Lane, p: &Lane) {
         *to = each(|l| x[l].powf(p[l]));
     }
     /// The four partial sums of [`Doubles`].
-    #[inline]
+    #[inline(always)]
     fn convolve(&self, to: &mut Lane, a: &[Lane], b: &[Lane]) {
         let mut sums = [[0.0; LANES]; 4];
         let (left, left_rest) = a.as_chunks::<4>();
@@ -134,7 +145,7 @@ impl Arithmetic for Lanes {
         let [a, b, c, d] = &sums;
         *to = each(|l| (a[l] + b[l]) + (c[l] + d[l]) + rest[l]);
     }
-    #[inline]
+    #[inline(always)]
     fn convolve_derivative(&self, to: &mut Lane, scratch: &mut Lane, a: &[Lane], b: &[Lane]) {
         self.set_zero(to);
         let n = a.len().saturating_sub(1);
@@ -152,9 +163,9 @@ struct Group {
     right_sides: Vec<usize>,
     rows: Rows<Lane>,
     order: usize,
-    /// The rows that are written at every level, and those of the first two levels.
-    written: Vec<usize>,
-    first: Vec<usize>,
+    /// The rows that a step reads.
+    read: Vec<usize>,
+    arch: pulp::Arch,
 }
 
 impl<'s> Integrator<'s, Doubles> {
@@ -174,16 +185,14 @@ impl<'s> Integrator<'s, Doubles> {
             each(|l| *tapes.get(l).unwrap_or(&tapes[0]).constants.get(c).unwrap_or(&0.0))
         };
         let tape = Tape::side_by_side(&tapes, &Lanes, join)?;
-        let row = |index: &usize| tape.states + index;
-        let states = 0..tape.states;
-        let written = states.chain(tape.steps.iter().map(|step| step.row(tape.states))).collect();
+        let read: Vec<usize> = (0..tape.states).chain(tape.needed.iter().copied()).collect();
         Some(Box::new(Group {
-            first: tape.live.iter().map(row).collect(),
-            written,
+            read,
             right_sides: first.system.right_sides.clone(),
             rows: Rows::new(tape.rows(), first.series.order + 1, &Lanes.zero()),
             order: first.series.order,
             tape,
+            arch: pulp::Arch::new(),
         }))
     }
 
@@ -206,31 +215,42 @@ impl Group {
         let switches = flows.iter().flatten().map(|flow| flow.phase.modes.len()).max().unwrap_or(0);
         let mode = |switch: usize| of(&|flow| f64::from(flow.phase.modes[switch]));
         let modes: Vec<Lane> = (0..switches).map(mode).collect();
-        let (mut sum, mut scratch) = (Lanes.zero(), Lanes.zero());
-        for n in 0..=self.order {
-            let (sum, scratch) = (&mut sum, &mut scratch);
-            let mut moment = Moment { time: &time, modes: &modes, sum, scratch };
-            self.tape.level(&Lanes, &mut self.rows, n, &mut moment);
-            if n == self.order {
-                break;
-            }
-            for (state, right) in self.right_sides.iter().enumerate() {
-                let next = self.rows.at(*right, n).map(|f| f / f64::from(n as u32 + 1));
-                *self.rows.at_mut(state, n + 1) = next;
-            }
-        }
+        let arch = self.arch;
+        arch.dispatch(Levels { group: self, time, modes: &modes });
         for (lane, flow) in flows.iter_mut().enumerate() {
             let Some(flow) = flow else { continue };
-            let rows = &mut flow.series.rows;
-            for row in &self.written {
-                let own = self.rows.row(*row).iter().map(|lanes| lanes[lane]);
-                rows.row_mut(*row).iter_mut().zip(own).for_each(|(to, x)| *to = x);
-            }
-            for row in &self.first {
-                let own = self.rows.row(*row).iter().map(|lanes| lanes[lane]);
-                rows.row_mut(*row).iter_mut().zip(own).take(2).for_each(|(to, x)| *to = x);
-            }
+            flow.series.take(&self.read, |row| self.rows.row(row).iter().map(|lanes| lanes[lane]));
             flow.expanded = true;
+        }
+    }
+}
+
+/// All levels from level 0 of the states, by the widest vectors that the processor has: the same operations on every
+/// number, and the same bits, by any.
+struct Levels<'g> {
+    group: &'g mut Group,
+    time: Lane,
+    modes: &'g [Lane],
+}
+
+impl pulp::NullaryFnOnce for Levels<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { group, time, modes } = self;
+        let (mut sum, mut scratch) = (Lanes.zero(), Lanes.zero());
+        for n in 0..=group.order {
+            let (sum, scratch) = (&mut sum, &mut scratch);
+            let mut moment = Moment { time: &time, modes, sum, scratch };
+            group.tape.level(&Lanes, &mut group.rows, n, &mut moment);
+            if n == group.order {
+                break;
+            }
+            for (state, right) in group.right_sides.iter().enumerate() {
+                let next = group.rows.at(*right, n).map(|f| f / f64::from(n as u32 + 1));
+                *group.rows.at_mut(state, n + 1) = next;
+            }
         }
     }
 }
@@ -299,8 +319,10 @@ mod tests {
             }
             assert_eq!((flow.state(), flow.time()), (alone.state(), alone.time()));
             assert_eq!(flow.work().steps, alone.work().steps);
-            // Every coefficient: the last ones do not reach the state.
-            assert_eq!(flow.series.rows.data, alone.series.rows.data);
+            // Every coefficient that a step reads: the last ones do not reach the state.
+            for row in (0..2).chain(flow.system.tape.needed.iter().copied()) {
+                assert_eq!(flow.series.rows.row(row), alone.series.rows.row(row));
+            }
         }
         let other = system(2);
         let one = Model::second_order(&(Expression::ACCELERATION + x)).unwrap();

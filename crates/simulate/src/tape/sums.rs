@@ -70,7 +70,7 @@ pub(crate) struct Sum<E> {
 
 impl<E: Clone> Sum<E> {
     /// sum = its coefficient n.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn level<R: Arithmetic<Element = E>>(
         &self,
         real: &R,
@@ -91,7 +91,7 @@ impl<E: Clone> Sum<E> {
 }
 
 impl<E: Clone> Term<E> {
-    #[inline]
+    #[inline(always)]
     fn level<R: Arithmetic<Element = E>>(&self, real: &R, rows: &Rows<E>, n: usize, to: &mut E) {
         match self.part {
             Part::Row(a) => real.set(to, rows.at(a, n)),
@@ -105,7 +105,7 @@ impl<E: Clone> Term<E> {
 }
 
 /// to = sum_j a_j a_(n-j) of n + 1 numbers.
-#[inline]
+#[inline(always)]
 pub(crate) fn square<R: Arithmetic>(real: &R, to: &mut R::Element, a: &[R::Element]) {
     let half = a.len() / 2;
     real.convolve(to, &a[..half], &a[a.len() - half..]);
