@@ -72,6 +72,14 @@ pub enum ResonanceError {
         /// The parameter.
         name: String,
     },
+    /// Frequencies of which no ratio is known.
+    #[error("the ratio of {first} to {second} is not known, and it decides what is resonant")]
+    NoRatio {
+        /// One of them.
+        first: String,
+        /// The other.
+        second: String,
+    },
     /// A factor of the linear part that is no rational number.
     #[error("{factor}, a factor of {unknown} in the linear part, is no rational number")]
     IrrationalFactor {
