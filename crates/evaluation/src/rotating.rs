@@ -261,8 +261,8 @@ fn backbone(slow: &SlowFlow, turn: &[Rational], names: &[&str], order: usize) ->
     Flow::of_rows(vec![row], parameters)
 }
 
-/// The response to the forces at order zero of a single unknown and its rate at eta_l = 0, where the symbols have these
-/// values.
+/// The response to the forces at order zero of a single unknown and its rate at eta_l = 0 in the time of the unit of
+/// frequency, where the symbols have these values.
 #[must_use]
 pub fn forced_part(slow: &SlowFlow, values: &[f64]) -> [f64; 2] {
     let unknowns = slow.unknowns();

@@ -215,12 +215,15 @@ pub(super) fn phases(
         let mut angle = angle_of(wave, names)?;
         let slow = || ResonanceError::NotAForce { term: names.shown(wave) };
         let leading = angle.rate.remove(0);
-        if let (Some(unit), Some(q)) = (generators.0, leading.as_number().filter(|q| !q.is_zero())) {
-            let (first, second) = (q.to_string(), unit.name.clone());
-            return Err(ResonanceError::NoRatio { first, second });
+        let found = multiples(&leading, generators);
+        if found.is_none() && leading.parameters().is_empty() {
+            let rate = names.shown(&leading);
+            return Err(match generators.0.filter(|_| leading.as_number().is_some()) {
+                Some(unit) => ResonanceError::NoRatio { first: rate, second: unit.name.clone() },
+                None => ResonanceError::IrrationalRate { rate },
+            });
         }
-        let leading = multiples(&leading, generators);
-        let leading = leading.filter(|list| list.iter().any(|q| !q.is_zero()));
+        let leading = found.filter(|list| list.iter().any(|q| !q.is_zero()));
         Ok((leading.ok_or_else(slow)?, angle))
     };
     let mut classes: Vec<Class> = Vec::new();

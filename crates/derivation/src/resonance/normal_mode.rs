@@ -92,6 +92,10 @@ pub fn normal_mode(
     if !prepared.forces.is_empty() {
         return Err(ResonanceError::ForcedMode.into());
     }
+    if let Some(unit) = prepared.unit.as_ref().filter(|unit| unit.square.is_none()) {
+        let (problem, name) = (problem.name.to_string(), unit.name.clone());
+        return Err(Error::Unset { problem, name });
+    }
     let modes = spectrum(&prepared.mass, &prepared.stiffness)?;
     let count = modes.squares.len();
     let index = mode.checked_sub(1).filter(|index| *index < count);

@@ -213,7 +213,8 @@ impl Prepared {
             let row = |p| (0..parts.len()).map(|j| entry(p, j)).collect();
             parts.iter().map(row).collect::<Result<Matrix, _>>()
         };
-        let (mass, stiffness) = (matrix(&|p| &p.mass, None)?, matrix(&|p| &p.stiffness, unit.as_ref())?);
+        let (mass, stiffness) =
+            (matrix(&|p| &p.mass, None)?, matrix(&|p| &p.stiffness, unit.as_ref())?);
         let root = || {
             let squares = spectrum(&mass, &stiffness).ok()?.squares;
             Unit::root(&squares, &leading_rates(&equations, names).ok()?)

@@ -17,6 +17,9 @@ use rug::ops::Pow;
 use rug::{Integer, Rational};
 use std::collections::BTreeMap;
 
+/// The highest power of a number that is formed.
+const HIGHEST: u32 = 50;
+
 /// A unit other than 1: a positive number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
@@ -92,12 +95,13 @@ impl Unit {
 
     /// e with multiples of u in the place of the roots of numbers that are such.
     pub(super) fn named(&self, e: &Expression) -> Expression {
-        e.substitute(&|e| {
+        e.map(&|e| {
             let Expression::Power(base, n) = e else { return None };
             let twice = Rational::from(n.as_number()? * 2);
             let base = base.as_number().filter(|base| *base > 0)?;
             let odd = twice.is_integer() && twice.numer().is_odd();
             let whole = odd.then(|| (twice.numer() - Integer::from(1)).to_i32())?? / 2;
+            let whole = Some(whole).filter(|n| n.unsigned_abs() <= HIGHEST)?;
             let factor = self.multiple(&base)? * Rational::from((&base).pow(whole));
             Some(Expression::Number(factor) * self.expression())
         })
@@ -122,7 +126,12 @@ impl Unit {
 
     /// The linear equations of [`super::System`] have the squares of frequencies as numbers; with multiples of u^2 in their
     /// place where u is a root.
-    pub(super) fn with_squares(&self, equation: Expression, j: usize, own: &Rational) -> Expression {
+    pub(super) fn with_squares(
+        &self,
+        equation: Expression,
+        j: usize,
+        own: &Rational,
+    ) -> Expression {
         let Some(d) = &self.square else { return equation };
         let square = Expression::Number(own.clone()) * self.expression().pow(2)
             - Expression::Number(Rational::from(own * d));
@@ -150,7 +159,8 @@ impl Unit {
 impl SlowFlow {
     /// With the square of a root put in.
     pub(super) fn with_root(mut self) -> Self {
-        let unit = self.system.unit.as_ref().and_then(|unit| unit.square.as_ref().map(|d| (unit, d)));
+        let unit =
+            self.system.unit.as_ref().and_then(|unit| unit.square.as_ref().map(|d| (unit, d)));
         let Some((unit, d)) = unit else { return self };
         let of_name = self.system.symbols.iter().position(|name| *name == unit.name);
         let Some(place) = of_name.map(|place| self.first_symbol() + place) else { return self };

@@ -1,7 +1,7 @@
 //! The slow flow of a question with its values, and what is shown of its states.
 
 use super::answer::{Estimate, Response};
-use super::frequency::forcing_frequency;
+use super::frequency::{forcing_frequency, moving_frequency};
 use super::{ORDER, Respond, SEARCHES, STEPS};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
@@ -77,8 +77,11 @@ impl<'a> Subject<'a> {
         let mut slow = asked(&case);
         let mut factor = None;
         let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
+        let is_unit = |slow: &SlowFlow, name: &String| {
+            slow.system.unit.as_ref().is_some_and(|unit| unit.name == *name)
+        };
         let open = |slow: &SlowFlow, name: &String| {
-            slow.system.symbols.contains(name) && !independent(slow, name)
+            slow.system.symbols.contains(name) && !independent(slow, name) && !is_unit(slow, name)
         };
         if let Some(axis) = &question.sweep
             && axis.name != small
@@ -90,6 +93,8 @@ impl<'a> Subject<'a> {
                 factor = Some(ratio);
                 swept[0] = Some(symbol);
                 slow = asked(&case.clone().with(name, value));
+            } else if slow.as_ref().is_ok_and(|slow| is_unit(slow, name)) {
+                return Err(moving_frequency(name));
             } else if let Ok(slow) = &slow {
                 let rate = independent(slow, name);
                 return Err(if rate { no_resonance(name) } else { no_part(name) });
@@ -173,6 +178,12 @@ impl<'a> Subject<'a> {
         if self.slow.enclosed.is_some() { "certified" } else { "exact" }
     }
 
+    /// The value of the unit of frequency.
+    fn unit(&self) -> Option<Ball> {
+        let value = |name: &str| self.oscillator.value(name);
+        self.slow.system.unit_value(&value, Balls::new(BITS))
+    }
+
     /// The value of a symbol cos(phi) or sin(phi).
     fn wave(&self, name: &str) -> Option<Ball> {
         let swept = |name: &str| self.swept.iter().flatten().any(|it| it == name);
@@ -185,8 +196,11 @@ impl<'a> Subject<'a> {
         let small = &self.oscillator.problem().small;
         let detuning = |name: &str| {
             let beside = self.slow.system.beside.as_ref().filter(|it| it.symbol == name)?;
-            let away = &beside.rate - self.slow.system.force();
-            Some(Value::Rational(away / self.small.as_ref()?))
+            let away = (&beside.rate - self.slow.system.force()) / self.small.as_ref()?;
+            Some(match &self.slow.system.unit {
+                None => Value::Rational(away),
+                Some(_) => Value::from(&Balls::new(BITS).mul_rational(&self.unit()?, &away)),
+            })
         };
         let known = |name: &str| match self.oscillator.value(name) {
             Some(value) => Some(Value::from(&value)),
@@ -322,7 +336,8 @@ impl<'a> Subject<'a> {
             |value: &Option<Value>| value.as_ref().map_or(f64::NAN, |it| it.interval().middle());
         let values: Vec<f64> = self.values([None, None]).iter().map(number).collect();
         let [forced, rate] = forced_part(&self.slow, &values);
-        let nu = self.slow.system.frequencies[0].to_f64();
+        let unit = self.unit().map_or(f64::NAN, |unit| unit.midpoint().to_f64());
+        let (rate, nu) = (unit * rate, unit * self.slow.system.frequencies[0].to_f64());
         [0.5 * (x - forced), -0.5 * (velocity - rate) / nu]
     }
 
@@ -432,7 +447,7 @@ fn not_whole() -> Error {
 
 /// Refuses a slow flow that depends on frequencies without a value.
 fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
-    let Some(name) = slow.system.independent.first() else { return Ok(()) };
+    let Some(name) = slow.system.open_frequency() else { return Ok(()) };
     let problem = oscillator.problem().name.to_string();
     Err(DerivationError::Unset { problem, name: name.clone() }.into())
 }

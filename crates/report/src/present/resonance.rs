@@ -184,8 +184,16 @@ impl Board<'_> {
                  there is a resonance, and the expansion does not hold."
             ));
         }
+        if let Some(unit) = flow.system.unit.iter().find(|unit| unit.square.is_none()) {
+            page = page.words(format!(
+                "Without a value, and positive: {}, of which the frequencies are multiples.",
+                unit.name
+            ));
+        }
         let Some(beside) = &flow.system.beside else { return page };
-        let (rate, at, small) = (&beside.rate, flow.system.force(), &flow.problem.small);
+        let [rate, at] =
+            [&beside.rate, &flow.system.force()].map(|rate| flow.print_multiple(rate, Style::Text));
+        let small = &flow.problem.small;
         let symbol = &beside.symbol;
         page.words(format!("{symbol} = ({rate} - {at})/{small}: the force is detuned."))
     }
