@@ -81,7 +81,9 @@ pub enum ResonanceError {
         second: String,
     },
     /// The frequency of a force is irrational, and others are no rational multiples of it.
-    #[error("{rate}, the frequency of a force, is an irrational number of which not all others are rational multiples")]
+    #[error(
+        "{rate}, the frequency of a force, is an irrational number of which not all others are rational multiples"
+    )]
     IrrationalRate {
         /// The frequency.
         rate: String,

@@ -42,6 +42,9 @@ impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
     fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
         None
     }
+    fn power(&self, e: &Expression) -> Option<AmplitudeElement<S::Element>> {
+        constant(self.algebra, e, &|name| self.parameter(name))
+    }
 }
 
 const WAVE: &str = "'wave";
@@ -123,7 +126,7 @@ impl Job<'_> {
             Some(unit) => algebra.with_unit(unit),
             None => Some(algebra),
         });
-        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count })?;
+        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count })?.with_inverses();
         let time = |algebra: &Amplitudes<S>, e: &Expression| {
             let binding = Symbols { algebra, step: 1, other };
             constant(algebra, e, &|name| binding.parameter(name))

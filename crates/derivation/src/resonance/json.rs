@@ -135,7 +135,7 @@ impl Serialize for NormalMode {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("parameter", &*self.problem.small)?;
         map.serialize_entry("mode", &self.mode)?;
-        map.serialize_entry("square", &self.square.to_string())?;
+        map.serialize_entry("square", &self.print_square(Style::Text))?;
         map.serialize_entry("ratios", &texts(&self.ratios))?;
         let shapes: Vec<_> = self.shapes.iter().map(|row| texts(row)).collect();
         map.serialize_entry("shapes", &shapes)?;

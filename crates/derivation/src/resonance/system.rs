@@ -242,8 +242,8 @@ impl System {
         let irrational = || ResonanceError::NoRationalForm;
         let unit = prepared.unit;
         // Without a number nothing is enclosed.
-        let symbol = unit.iter().find(|unit| unit.square.is_none()).map(|unit| unit.name.clone());
-        let enclosed = || symbol.clone().map_or(Ok(()), |name| Err(ResonanceError::Unset { name }));
+        let symbol = unit.clone().filter(|unit| unit.square.is_none());
+        let enclosed = || symbol.as_ref().map_or(Ok(()), |unit| Err(unit.unset()));
         let (mut modes, algebraic) = match spectrum(mass, stiffness) {
             Err(ResonanceError::NoRationalForm) => {
                 enclosed()?;

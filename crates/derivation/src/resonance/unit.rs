@@ -107,6 +107,11 @@ impl Unit {
         })
     }
 
+    /// That it has no value where one is needed.
+    pub(super) fn unset(&self) -> ResonanceError {
+        ResonanceError::Unset { name: self.name.clone() }
+    }
+
     pub(super) fn expression(&self) -> Expression {
         Expression::parameter(&self.name)
     }

@@ -49,7 +49,7 @@ impl Refusal for ExpandError {
             Self::UnknownName { .. } => (
                 Usage,
                 "no-value-set",
-                "--set NAME=VALUE; --normalisation free keeps parameters of the small terms as symbols",
+                "--set NAME=VALUE; --normalisation free keeps parameters as symbols, and so does --mode 1 (omega0^2*x for the linear part)",
             ),
             Self::UnsupportedTerm { term } if term.contains("t)") || term == "t" => (
                 NoAnswer,
@@ -83,12 +83,26 @@ impl Refusal for ResonanceError {
                 "forces are cos(m*omega*t) of one omega, detuned together: cos(m*(1 + eps*sigma)*t)",
             ),
             Self::UndecidedDivisor { .. } => (Undecided, "undecided", EXACT_RELATION),
-            Self::NotAForce { .. } | Self::Acceleration { .. } | Self::Delay { .. } => {
+            Self::NotAForce { .. } | Self::Acceleration { .. } => {
                 (NoAnswer, "no-method", "`lindstedt simulate` takes it")
             }
-            Self::NotWeaklyNonlinear { .. } => {
-                (NoAnswer, "no-method", "a factor eps marks the small terms")
-            }
+            Self::Delay { .. } => (
+                NoAnswer,
+                "no-method",
+                "`lindstedt derive` without --mode and --unknown averages a delay of order eps; of one unknown \
+                 `lindstedt simulate` takes it as it is",
+            ),
+            Self::NotWeaklyNonlinear { term } if term.contains("(t - ") => (
+                NoAnswer,
+                "no-method",
+                "with a factor eps, eps*x(t - T), a delay is averaged; of one unknown `lindstedt derive --unknown NAME` finds the \
+                 Hopf points of a parameter, and `lindstedt simulate` takes it as it is",
+            ),
+            Self::NotWeaklyNonlinear { .. } => (
+                NoAnswer,
+                "no-method",
+                "a factor eps marks the small terms; `lindstedt simulate` takes the equation as it is",
+            ),
             Self::Equations { .. } => {
                 (Usage, "second-unknown", "one equation for every unknown, separated by `;`")
             }

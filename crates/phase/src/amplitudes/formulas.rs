@@ -63,13 +63,18 @@ impl<S: Scalars> Amplitudes<S> {
         self
     }
 
-    /// The algebra whose only generator is a symbol, which has an inverse; nothing without that symbol.
+    /// The algebra whose only generator is a symbol; nothing without that symbol.
     #[must_use]
     pub fn with_unit(mut self, name: &str) -> Option<Self> {
         self.generators = vec![self.symbol(name)?];
-        self.units = true;
         self.unknowns = self.of_own_rates();
         Some(self)
+    }
+
+    /// The algebra whose symbols have inverses.
+    #[must_use]
+    pub fn with_inverses(self) -> Self {
+        Self { units: true, ..self }
     }
 
     /// The algebra that divides by nu^2 - Omega^2: the force's rate is the symbol `omega`, and `inverse` becomes the
