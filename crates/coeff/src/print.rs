@@ -345,6 +345,9 @@ pub fn latex_name(name: &str) -> String {
         let space = if argument.starts_with('\\') { "" } else { " " };
         return if simple { format!(r"\ln{space}{argument}") } else { format!(r"\ln({argument})") };
     }
+    if let Some(number) = name.strip_prefix("sqrt(").and_then(|rest| rest.strip_suffix(')')) {
+        return format!(r"\sqrt{{{number}}}");
+    }
     for function in ["cos", "sin"] {
         let argument = name.strip_prefix(function).and_then(|rest| rest.strip_prefix('('));
         if let Some(product) = argument.and_then(|rest| rest.strip_suffix(')')) {

@@ -1,7 +1,8 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classification::{Algebra, Classification, Forcing, Method, Reason, evaluate};
+use crate::classification::{Algebra, Classification, Forcing, Method, Reason, evaluate, put_in};
 use crate::monomials::expand;
+use crate::roots::{rational_root, rational_square};
 use crate::saddle::has_saddle;
 use crate::symmetry::{Parity, parity, parity_in_x};
 use crate::{Condition, Expression, Function, Problem};
@@ -151,7 +152,7 @@ fn lindstedt(
     if has_velocity && against.is_empty() {
         match stiffness {
             None => against.push(Reason::UnknownFrequency),
-            Some(kappa) if crate::roots::rational_root(kappa).is_none() => {
+            Some(kappa) if rational_root(kappa).is_none() => {
                 against.push(Reason::IrrationalFrequency);
             }
             _ => {}
@@ -210,9 +211,14 @@ fn averaging(
             _ => {}
         }
     }
+    // (k/m)^2, as of x'' + 2*x and cos(sqrt(2)*t).
+    let has_ratio = |frequency: &Expression| {
+        let stiffness = evaluate(&parts.stiffness, values).filter(|kappa| !kappa.is_zero())?;
+        rational_root(&(rational_square(&put_in(frequency, values))? / stiffness))
+    };
     let of_frequency = |force: &Forcing| {
         let frequency = force.frequency.as_ref()?;
-        if frequency.find(&is_irrational).is_some() {
+        if frequency.find(&is_irrational).is_some() && has_ratio(frequency).is_none() {
             return Some(Reason::IrrationalRatio(force.term.clone()));
         }
         // 2 - omega_1 beside a force of omega_1 is a combination of independent frequencies.

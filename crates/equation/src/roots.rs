@@ -1,7 +1,9 @@
 //! Square roots in closed form.
 
 use crate::Expression;
+use crate::monomials::expand;
 use rug::Rational;
+use rug::ops::Pow;
 use std::cmp::Ordering;
 
 /// The rational square root of a positive rational number, if it is one.
@@ -10,6 +12,23 @@ pub fn rational_root(q: &Rational) -> Option<Rational> {
         && q.numer().is_perfect_square()
         && q.denom().is_perfect_square();
     square.then(|| Rational::from((q.numer().clone().sqrt(), q.denom().clone().sqrt())))
+}
+
+/// The highest power of a number that is formed.
+const HIGHEST: u32 = 100;
+
+/// The square of a rational multiple of the root of a number, as of 3/2*2^(1/2), where it is rational.
+pub(crate) fn rational_square(e: &Expression) -> Option<Rational> {
+    let all = expand(e)?;
+    let [(monomial, q)] = all.terms.iter().collect::<Vec<_>>()[..] else { return None };
+    let root = |(name, power): (&String, &i32)| {
+        let Expression::Power(base, n) = all.atoms.get(name)? else { return None };
+        let twice = Rational::from(n.as_number()? * 2) * *power;
+        let twice = twice.is_integer().then(|| twice.numer().to_i32())??;
+        let twice = Some(twice).filter(|n| n.unsigned_abs() <= HIGHEST)?;
+        Some(Rational::from(base.as_number()?.pow(twice)))
+    };
+    monomial.parameters.iter().map(root).try_fold(q.clone().square(), |q, root| Some(q * root?))
 }
 
 /// sqrt(kappa), in closed form where kappa is a square.

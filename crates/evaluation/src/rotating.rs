@@ -288,8 +288,8 @@ pub fn order_sizes(slow: &SlowFlow, values: &[f64], moduli: &[f64], order: usize
     std::iter::once(free).chain(orders).collect()
 }
 
-/// The response to the forces at order zero of a single unknown and its rate at eta_l = 0, where the symbols have these
-/// values.
+/// The response of an unknown to the forces at order zero and its rate at eta_l = 0 in the time of the unit of frequency,
+/// where the symbols have these values.
 #[must_use]
 pub fn forced_part(slow: &SlowFlow, unknown: usize, values: &[f64]) -> [f64; 2] {
     let unknowns = slow.unknowns();

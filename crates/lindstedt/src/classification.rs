@@ -42,9 +42,9 @@ pub fn of(
 const FORCES: &str = "forces are averaged together where their frequencies are rational multiples of one: approximate the \
      ratio by a fraction; `lindstedt simulate` takes them as they are";
 /// with one that is irrational,
-const RATIO: &str = "where its ratio to that of the oscillator is rational, as of x'' + 2*x and cos(sqrt(2)*t), the time \
-     tau = sqrt(2)*t makes both rational: x'' becomes 2*x'', x' sqrt(2)*x'; a parameter without a value, cos(omega*t), counts as independent (`lindstedt derive`), a fraction near it \
-     as itself; `lindstedt simulate` takes it as it is";
+const RATIO: &str = "a rational multiple of the frequency of the oscillator, as cos(sqrt(2)*t) beside x'' + 2*x, is taken as it \
+     is; a parameter without a value, cos(omega*t), counts as independent (`lindstedt derive`), a fraction near it as itself; \
+     `lindstedt simulate` takes it as it is";
 /// with a detuning that is not small,
 const DETUNING: &str = "write cos((1 + eps*sigma)*t), or give the parameter a value (--set NAME=VALUE); `lindstedt simulate` takes \
      it as it is";

@@ -76,11 +76,17 @@ impl Oscillator {
     }
 
     /// Whether amplitude and phase are not all: several unknowns, a force whose phase contains the small
-    /// parameter, or forces that are no harmonics of one phase.
+    /// parameter or the root of a number, or forces that are no harmonics of one phase.
     pub(crate) fn has_flow_alone(&self) -> bool {
+        let root = |e: &Expression| match e {
+            Expression::Power(base, n) => {
+                base.as_number().is_some() && n.as_number().is_some_and(|n| !n.is_integer())
+            }
+            other => *other == Expression::Small,
+        };
         let detuned = |e: &Expression| match e {
             Expression::Function(_, angle) => {
-                angle.contains(&Expression::Time) && angle.contains(&Expression::Small)
+                angle.contains(&Expression::Time) && angle.nodes().any(root)
             }
             _ => false,
         };

@@ -263,7 +263,7 @@ impl System {
         self.angles.get(symbol).map(|(angle, sine)| (angle, *sine))
     }
 
-    /// The value of a symbol cos(phi) or sin(phi); nothing for another symbol, or where a name in phi has no value.
+    /// The value of a symbol cos(phi) or sin(phi), or of the unit sqrt(d); nothing for another symbol, or where a name in phi has no value.
     #[must_use]
     pub fn wave(
         &self,
@@ -271,14 +271,21 @@ impl System {
         values: &dyn Fn(&str) -> Option<Exact>,
         balls: Balls,
     ) -> Option<Ball> {
-        let (angle, sine) = self.angle(symbol)?;
+        let unit = |name: &str| {
+            let unit = self.unit.as_ref().filter(|unit| unit.name == name);
+            Some(Exact::root(unit?.square.clone()?).ball(balls))
+        };
+        let Some((angle, sine)) = self.angle(symbol) else { return unit(symbol) };
         let root = |name: &str| {
             let j: usize = name.strip_prefix("nu_")?.parse().ok()?;
             balls.sqrt(&balls.from_rational(self.squares.get(j.checked_sub(1)?)?))
         };
         let value = |name: &str| match name {
             "pi" => Some(balls.pi()),
-            _ => values(name).map(|value| value.ball(balls)).or_else(|| root(name)),
+            _ => values(name)
+                .map(|value| value.ball(balls))
+                .or_else(|| unit(name))
+                .or_else(|| root(name)),
         };
         let ring = BallRing { balls };
         let angle = constant(&ring, angle, &|name| value(name).map(Enclosure))?.0;

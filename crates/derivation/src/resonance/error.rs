@@ -72,6 +72,22 @@ pub enum ResonanceError {
         /// The parameter.
         name: String,
     },
+    /// Frequencies of which no ratio is known.
+    #[error("the ratio of {first} to {second} is not known, and it decides what is resonant")]
+    NoRatio {
+        /// One of them.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// The frequency of a force is irrational, and others are no rational multiples of it.
+    #[error(
+        "{rate}, the frequency of a force, is an irrational number of which not all others are rational multiples"
+    )]
+    IrrationalRate {
+        /// The frequency.
+        rate: String,
+    },
     /// A factor of the linear part that is no rational number.
     #[error("{factor}, a factor of {unknown} in the linear part, is no rational number")]
     IrrationalFactor {

@@ -3,6 +3,7 @@
 use super::delays::Delays;
 use super::potential::potential;
 use super::system::refuse_delays;
+use super::unit::Unit;
 use super::{
     Names, ResonanceError, Room, SlowFlow, System, Terms, refuse_near_miss, sum_of_harmonics,
 };
@@ -41,6 +42,9 @@ impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
     fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
         None
     }
+    fn power(&self, e: &Expression) -> Option<AmplitudeElement<S::Element>> {
+        constant(self.algebra, e, &|name| self.parameter(name))
+    }
 }
 
 const WAVE: &str = "'wave";
@@ -76,23 +80,28 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The multiples of 1 in the nu_j, where these are rational, and those in the Omega_l; one 0 without a force.
+    /// The multiples of 1 and the generators, a unit other than 1 first, in the nu_j, where these are multiples of the unit,
+    /// and in the Omega_l; one 0 without a force.
     pub(super) fn rates<E>(&self, generators: Vec<(E, Integer)>) -> Rates<E> {
-        let amplitudes = self.system.frequencies.iter().map(|nu| vec![nu.clone()]).collect();
-        let mut forces: Vec<_> =
-            self.system.forces.iter().map(|phase| phase.rate.clone()).collect();
+        let number = self.system.unit.as_ref().map(|_| Rational::new());
+        let rate = |rate: &[Rational]| number.iter().chain(rate).cloned().collect::<Vec<_>>();
+        let amplitudes = self.system.frequencies.iter();
+        let amplitudes = amplitudes.map(|nu| rate(std::slice::from_ref(nu))).collect();
+        let mut forces: Vec<_> = self.system.forces.iter().map(|phase| rate(&phase.rate)).collect();
         if forces.is_empty() {
             forces.push(vec![Rational::new()]);
         }
         Rates { amplitudes, forces, generators }
     }
 
-    /// Over rational numbers.
+    /// Over rational numbers, a unit other than 1 being the last of the symbols.
     pub(super) fn rational(
         &self,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<SlowFlow, Error> {
-        let run = self.run(Integers, (self.rates(Vec::new()), &[]), &|_| None, observer)?;
+        let units: Vec<_> = self.system.unit.iter().map(Unit::expression).collect();
+        let generators = units.iter().map(|_| Integers.fraction(&1.into())).collect();
+        let run = self.run(Integers, (self.rates(generators), &units), &|_| None, observer)?;
         let terms = |f: &_| run.algebra.rational_terms(f).unwrap_or_default();
         Ok(self.finished(&run, &terms))
     }
@@ -112,7 +121,12 @@ impl Job<'_> {
         let delays = Delays::of(&equations, &rates, generators)?;
         let algebra = Amplitudes::turning(scalars, rates.clone(), &names, delays.phases());
         let count = names.len() + delays.phases();
-        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count })?;
+        let unit = system.unit.iter().map(|unit| &*unit.name).find(|unit| names.contains(unit));
+        let algebra = algebra.and_then(|algebra| match unit {
+            Some(unit) => algebra.with_unit(unit),
+            None => Some(algebra),
+        });
+        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count })?.with_inverses();
         let time = |algebra: &Amplitudes<S>, e: &Expression| {
             let binding = Symbols { algebra, step: 1, other };
             constant(algebra, e, &|name| binding.parameter(name))

@@ -2,6 +2,7 @@
 //! rational multiples of one another at all orders are harmonics of one phase eta_l with
 //! eta_l' = Omega_l + eps sigma_{l,1} + eps^2 sigma_{l,2} + ..., up to constants; others have phases of their own.
 
+use super::unit::Unit;
 use super::{Names, ResonanceError};
 use lindstedt_equation::monomials::{Monomial, expand};
 use lindstedt_equation::print::Style;
@@ -16,7 +17,7 @@ type Rate = Vec<Expression>;
 /// The phase of a force: eta' = rate + eps detuning_1 + ..., eta(0) = start.
 #[derive(Clone, Debug)]
 pub struct Phase {
-    /// Omega: its multiples of 1 and of the independent parameters, in their order.
+    /// Omega: its multiples of the unit and of the independent parameters, in their order.
     pub rate: Vec<Rational>,
     /// sigma_1, sigma_2, ...
     pub detuning: Vec<Expression>,
@@ -25,7 +26,7 @@ pub struct Phase {
 }
 
 impl Phase {
-    /// Omega, where it is a number.
+    /// Omega, where it is a multiple of the unit.
     #[must_use]
     pub fn number(&self) -> Option<Rational> {
         let [number, rest @ ..] = &self.rate[..] else { return None };
@@ -121,13 +122,17 @@ fn gap(a: &Expression, ratio: &Rational, b: &Expression) -> Option<Expression> {
         .filter(|e| e.as_number().is_none_or(|q| !q.is_zero()))
 }
 
-/// The multiples of 1 and of independent parameters that add up to a rate; nothing for another rate.
-fn multiples(rate: &Expression, independent: &[String]) -> Option<Vec<Rational>> {
+/// The unit and the independent parameters.
+type Generators<'a> = (Option<&'a Unit>, &'a [String]);
+
+/// The multiples of the unit and of independent parameters that add up to a rate; nothing for another rate.
+fn multiples(rate: &Expression, (unit, independent): Generators<'_>) -> Option<Vec<Rational>> {
     let mut list = vec![Rational::new(); 1 + independent.len()];
     for (m, q) in &expand(rate)?.terms {
         let mut named = m.parameters.iter();
         let place = match (named.next(), named.next()) {
-            (None, _) => 0,
+            (None, _) if unit.is_none() => 0,
+            (Some((name, 1)), None) if unit.is_some_and(|unit| unit.name == *name) => 0,
             (Some((name, 1)), None) => 1 + independent.iter().position(|known| known == name)?,
             _ => return None,
         };
@@ -203,14 +208,22 @@ pub(super) struct InPhases {
 /// The phases of the forces, and the equations in them.
 pub(super) fn phases(
     equations: &[Expression],
-    independent: &[String],
+    generators: Generators<'_>,
     names: Names<'_>,
 ) -> Result<InPhases, ResonanceError> {
     let read = |wave: &Expression| {
         let mut angle = angle_of(wave, names)?;
         let slow = || ResonanceError::NotAForce { term: names.shown(wave) };
-        let leading = multiples(&angle.rate.remove(0), independent);
-        let leading = leading.filter(|list| list.iter().any(|q| !q.is_zero()));
+        let leading = angle.rate.remove(0);
+        let found = multiples(&leading, generators);
+        if found.is_none() && leading.parameters().is_empty() {
+            let rate = names.shown(&leading);
+            return Err(match generators.0.filter(|_| leading.as_number().is_some()) {
+                Some(unit) => ResonanceError::NoRatio { first: rate, second: unit.name.clone() },
+                None => ResonanceError::IrrationalRate { rate },
+            });
+        }
+        let leading = found.filter(|list| list.iter().any(|q| !q.is_zero()));
         Ok((leading.ok_or_else(slow)?, angle))
     };
     let mut classes: Vec<Class> = Vec::new();

@@ -135,7 +135,7 @@ impl Serialize for NormalMode {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("parameter", &*self.problem.small)?;
         map.serialize_entry("mode", &self.mode)?;
-        map.serialize_entry("square", &self.square.to_string())?;
+        map.serialize_entry("square", &self.print_square(Style::Text))?;
         map.serialize_entry("ratios", &texts(&self.ratios))?;
         let shapes: Vec<_> = self.shapes.iter().map(|row| texts(row)).collect();
         map.serialize_entry("shapes", &shapes)?;
@@ -191,7 +191,14 @@ impl Serialize for SlowFlow {
         map.serialize_entry("parameter", &*self.problem.small)?;
         map.serialize_entry("normalisation", &Condition::FreeAmplitude)?;
         map.serialize_entry("unknowns", &self.coordinates())?;
-        let frequencies: Vec<_> = system.frequencies.iter().map(|nu| self.number(nu)).collect();
+        let frequency = |nu: &Rational| match self.enclosed {
+            Some(_) => self.number(nu),
+            None => self.print_multiple(nu, Style::Text),
+        };
+        let frequencies: Vec<_> = system.frequencies.iter().map(frequency).collect();
+        if let Some(unit) = &system.unit {
+            map.serialize_entry("unit", &unit.name)?;
+        }
         map.serialize_entry("frequencies", &frequencies)?;
         if let Some(enclosed) = self.enclosed {
             map.serialize_entry("squares", &of_modes(&system.squares))?;
@@ -219,7 +226,8 @@ impl Serialize for SlowFlow {
         if !system.independent.is_empty() {
             map.serialize_entry("independent", &system.independent)?;
         }
-        let beside = system.beside.as_ref().map(|b| (b.symbol.as_str(), b.rate.to_string()));
+        let beside = system.beside.as_ref();
+        let beside = beside.map(|b| (b.symbol.as_str(), self.print_multiple(&b.rate, Style::Text)));
         map.serialize_entry("beside", &beside.map(|pair| Object(vec![pair])))?;
         map.serialize_entry("symbols", &system.symbols)?;
         let orders = (1..self.flow.first().map_or(0, Vec::len)).map(|n| {

@@ -29,6 +29,7 @@ mod print;
 mod quotients;
 mod sought;
 mod system;
+mod unit;
 
 pub use algebraic::AlgebraicModes;
 pub use error::ResonanceError;
@@ -40,6 +41,7 @@ pub use polar::{Polar, PolarTerm};
 pub use print::{print_name, print_turns};
 pub use sought::{Sought, SoughtBranch, sought};
 pub use system::{Beside, System};
+pub use unit::Unit;
 
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
@@ -255,14 +257,17 @@ pub fn slow_flow(
     equations.iter().try_for_each(|e| check_delays(e, &settings.parameters))?;
     let cards = |name: &str| value(problem, &settings.parameters, name);
     let system = System::of(&equations, &settings.parameters, &cards, Names(problem), true)?;
-    let job = flow::Job { problem, system, settings };
+    let mut job = flow::Job { problem, system, settings };
     if !job.system.is_exact() {
-        enclosed::derived(&job, observer)
-    } else if job.system.independent.is_empty() {
-        job.rational(observer)
-    } else {
-        quotients::derived(&job, observer)
+        return enclosed::derived(&job, observer);
     }
+    let flow = if job.system.independent.is_empty() {
+        job.system.symbols.extend(job.system.unit.iter().map(|unit| unit.name.clone()));
+        job.rational(observer)?
+    } else {
+        quotients::derived(&job, observer)?
+    };
+    Ok(flow.with_root())
 }
 
 /// What the next order is predicted to need, from the terms of those before it.

@@ -32,6 +32,8 @@ struct At<'a> {
     flow: &'a SlowFlow,
     small: &'a Rational,
     symbols: Vec<Rational>,
+    /// That of the unit.
+    unit: Rational,
     /// eta_l(0) where one is not 0.
     starts: Option<Vec<Ball>>,
 }
@@ -100,7 +102,8 @@ impl At<'_> {
     fn force_rate(&self, l: usize) -> Rational {
         let detuning = self.flow.detuning.get(l).map_or_else(Polynomial::new, |d| self.sum(d, 1));
         let leading = self.flow.system.forces.get(l).and_then(Phase::number);
-        detuning.into_values().map(|[re, _]| re).sum::<Rational>() + leading.unwrap_or_default()
+        detuning.into_values().map(|[re, _]| re).sum::<Rational>()
+            + leading.unwrap_or_default() * &self.unit
     }
 
     /// D x, whose real part is the rate.
@@ -189,15 +192,17 @@ impl SlowFlow {
         amplitude: &Rational,
     ) -> Option<[Motion; 2]> {
         let beside = self.system.beside.as_ref();
+        let exact = |name: &str| values(name).map(Exact::Rational);
+        let unit = nearby(&self.system.unit_value(&exact, balls())?)?;
         let symbol = |name: &String| match beside.filter(|beside| beside.symbol == *name) {
-            Some(beside) => Some((&beside.rate - self.system.force()) / small),
+            Some(beside) => Some((&beside.rate - self.system.force()) * &unit / small),
             None => self.constant(name, values),
         };
         let symbols: Vec<_> = self.system.symbols.iter().map(symbol).collect::<Option<_>>()?;
         let starts = self.system.forces.iter().map(|phase| self.angle(&phase.start, values));
         let starts = starts.collect::<Option<Vec<_>>>()?;
         let starts = Some(starts).filter(|all| all.iter().any(|start| !start.contains_zero()));
-        let at = At { flow: self, small, symbols, starts };
+        let at = At { flow: self, small, symbols, unit, starts };
         let unknowns = self.unknowns();
         let mut names: Vec<String> =
             (1..=unknowns).flat_map(|j| [format!("u_{j}"), format!("v_{j}")]).collect();

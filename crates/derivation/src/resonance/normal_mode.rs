@@ -13,6 +13,7 @@ use super::flow::Symbols;
 use super::modes::{Matrix, Spectrum, spectrum};
 use super::print::print_powers;
 use super::system::{Prepared, refuse_delays, separated, symbols};
+use super::unit::Unit;
 use super::{Element, Names, ResonanceError, Terms, refuse_near_miss};
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
@@ -50,7 +51,9 @@ pub struct NormalMode {
     pub problem: Problem,
     /// The number of the mode, from 1.
     pub mode: usize,
-    /// nu^2.
+    /// The symbol of which frequencies are multiples; nothing where they have numbers.
+    pub unit: Option<Unit>,
+    /// nu^2 in multiples of its square.
     pub square: Rational,
     /// kappa_j, that of the mode (1) first.
     pub ratios: Vec<Rational>,
@@ -92,7 +95,12 @@ pub fn normal_mode(
     if !prepared.forces.is_empty() {
         return Err(ResonanceError::ForcedMode.into());
     }
-    let modes = spectrum(&prepared.mass, &prepared.stiffness)?;
+    let unit = prepared.unit.filter(|unit| unit.square.is_none());
+    let modes = spectrum(&prepared.mass, &prepared.stiffness);
+    let modes = modes.map_err(|error| match (error, &unit) {
+        (ResonanceError::NoRationalForm, Some(unit)) => unit.unset(),
+        (other, _) => other,
+    })?;
     let count = modes.squares.len();
     let index = mode.checked_sub(1).filter(|index| *index < count);
     let modes = modes.with_first(index.ok_or(ResonanceError::NoSuchMode { mode, modes: count })?);
@@ -101,7 +109,7 @@ pub fn normal_mode(
         return Err(ResonanceError::NoOscillation { square: square.to_string() }.into());
     }
     let equations = separated(&prepared.equations, &modes, None, names)?;
-    let equations = in_own_time(&equations, &square)?;
+    let equations = in_own_time(&equations, &square, unit.as_ref())?;
     let symbols = symbols(equations.iter(), names);
     refuse_taken(&symbols, |base, numbered| match base {
         "rho" if !numbered => Some("the square of the amplitude"),
@@ -117,7 +125,7 @@ pub fn normal_mode(
         modes.squares.iter().map(|other| Rational::from(other / &square)).collect();
     let algebra = Amplitudes::new(Integers, &[1.into()], &Rational::new(), &list);
     let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: list.len() })?;
-    let algebra = algebra.with_unknowns(&ratios).with_stop(settings.stop.clone());
+    let algebra = algebra.with_unknowns(&ratios).with_inverses().with_stop(settings.stop.clone());
     let binding = Symbols { algebra: &algebra, step: 1, other: &|_| None };
     let graph = compile_system(&algebra, &equations, &binding, settings.order)?;
     let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
@@ -142,6 +150,7 @@ pub fn normal_mode(
     Ok(NormalMode {
         problem: problem.clone(),
         mode,
+        unit,
         square,
         ratios,
         shapes: modes.shapes.unwrap_or_default(),
@@ -154,21 +163,24 @@ pub fn normal_mode(
     })
 }
 
-/// The equations divided by nu^2, in the time nu t.
+/// The equations divided by nu^2, in the time nu t, nu in multiples of the unit.
 fn in_own_time(
     equations: &[Expression],
     square: &Rational,
+    unit: Option<&Unit>,
 ) -> Result<Vec<Expression>, ResonanceError> {
     let root = rational_root(square);
     let velocity = |e: &Expression| matches!(e, Expression::Unknown(Unknown { derivative: 1, .. }));
     if root.is_none() && equations.iter().flat_map(Expression::nodes).any(velocity) {
-        return Err(ResonanceError::IrrationalMode { square: square.to_string() });
+        let square = print_square(square, unit, Style::Text);
+        return Err(ResonanceError::IrrationalMode { square });
     }
+    let unit = unit.map_or_else(|| Expression::integer(1), Unit::expression);
     let faster = |e: &Expression| {
         let root = root.clone().filter(|_| velocity(e))?;
-        Some(Expression::Number(root) * e.clone())
+        Some(Expression::Number(root) * unit.clone() * e.clone())
     };
-    let scale = Expression::Number(Rational::from(square.recip_ref()));
+    let scale = Expression::Number(Rational::from(square.recip_ref())) * unit.clone().pow(-2);
     let equation = |(j, equation): (usize, &Expression)| {
         let acceleration = Expression::unknown(j, 2);
         let rest = equation.terms().iter().filter(|term| **term != acceleration);
@@ -177,6 +189,12 @@ fn in_own_time(
         Expression::Sum([acceleration.clone()].into_iter().chain(rest).collect())
     };
     Ok(equations.iter().enumerate().map(equation).collect())
+}
+
+fn print_square(square: &Rational, unit: Option<&Unit>, style: Style) -> String {
+    let factor = |unit: &Unit| power(&super::print_name(&unit.name, style), 2, style);
+    let factors = unit.map(factor).into_iter().collect();
+    print_sum(&[Term { coefficient: square.clone(), factors }], style)
 }
 
 fn refuse_internal(
@@ -260,7 +278,13 @@ fn listed(sum: InAmplitude) -> Terms {
 }
 
 impl NormalMode {
-    /// nu, where it is rational.
+    /// nu^2.
+    #[must_use]
+    pub fn print_square(&self, style: Style) -> String {
+        print_square(&self.square, self.unit.as_ref(), style)
+    }
+
+    /// nu in multiples of the unit, where it is rational.
     #[must_use]
     pub fn frequency(&self) -> Option<Rational> {
         rational_root(&self.square)

@@ -164,9 +164,21 @@ impl SlowFlow {
         print_sum(&self.leading_rate(l, style), style)
     }
 
+    /// A multiple of the unit.
+    #[must_use]
+    pub fn print_multiple(&self, q: &Rational, style: Style) -> String {
+        print_sum(&[self.multiple(q, style)], style)
+    }
+
+    fn multiple(&self, q: &Rational, style: Style) -> Term {
+        let unit = self.system.unit.as_ref().map(|unit| print_name(&unit.name, style));
+        Term { coefficient: q.clone(), factors: unit.into_iter().collect() }
+    }
+
     fn leading_rate(&self, l: usize, style: Style) -> Vec<Term> {
         let rate = self.system.forces.get(l).map_or(&[][..], |phase| &phase.rate);
-        let names = std::iter::once(None).chain(self.system.independent.iter().map(Some));
+        let unit = self.system.unit.as_ref().map(|unit| &unit.name);
+        let names = std::iter::once(unit).chain(self.system.independent.iter().map(Some));
         let term = |(coefficient, name): (&Rational, Option<&String>)| Term {
             coefficient: coefficient.clone(),
             factors: name.map(|name| print_name(name, style)).into_iter().collect(),
@@ -233,7 +245,7 @@ impl SlowFlow {
         orders: &[Vec<PolarTerm>],
         style: Style,
     ) -> String {
-        let first = leading.map(|coefficient| Term { coefficient, factors: vec!["a".to_owned()] });
+        let first = leading.map(|q| self.multiple(&q, style).times(["a".to_owned()]));
         let mut sum: Vec<Term> = first.into_iter().collect();
         for (n, terms) in orders.iter().enumerate().filter(|(_, terms)| !terms.is_empty()) {
             let terms: Vec<Term> = terms.iter().map(|term| self.wave(term, style)).collect();

@@ -18,7 +18,8 @@ pub(super) fn derived(
     job: &Job<'_>,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
-    let names = job.system.independent.clone();
+    let unit = job.system.unit.iter().map(|unit| &unit.name);
+    let names: Vec<String> = unit.chain(&job.system.independent).cloned().collect();
     let field = ParameterField {
         ring: PolynomialRing { parameters: names.clone() },
         pairs: vec![],

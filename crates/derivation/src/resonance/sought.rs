@@ -121,10 +121,11 @@ pub fn sought(
     let equations = [equation];
     refuse_delays(&equations, Names(problem))?;
     let system = System::of(&equations, &given, &cards, Names(problem), false)?;
-    if let Some(name) = system.independent.first() {
-        return Err(ResonanceError::Unset { name: name.clone() }.into());
+    if let Some(name) = system.open_frequency() {
+        let problem = problem.name.to_string();
+        return Err(Error::Unset { problem, name: name.clone() });
     }
-    if !system.is_exact() {
+    if !system.is_exact() || system.unit.is_some() {
         return Err(modes_refused(&system.squares).into());
     }
     if system.forces.len() > 1 {
@@ -193,7 +194,7 @@ fn beginning(
     if !problem.equation.parameters().iter().any(|known| known == name) {
         return Err(ResonanceError::NotSought { name: name.to_owned() }.into());
     }
-    let unset = || ResonanceError::Unset { name: name.to_owned() };
+    let unset = || Error::Unset { problem: problem.name.to_string(), name: name.to_owned() };
     let start = value(problem, &settings.parameters, name).ok_or_else(unset)?;
     let irrational = || Error::Irrational { name: name.to_owned(), value: start.to_string() };
     let start = start.as_rational().ok_or_else(irrational)?.clone();

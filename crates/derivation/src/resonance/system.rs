@@ -5,19 +5,24 @@ use super::forces::{
     Angles, InPhases, Phase, harmonic, is_internal, is_wave, leading_rates, near, phases,
 };
 use super::modes::{Matrix, Spectrum, inverted, modes_refused, spectrum};
+use super::unit::Unit;
 use super::{Names, ResonanceError};
 use crate::error::DerivationError as Error;
 use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Function, Unknown};
 use lindstedt_number::Exact;
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is averaged: x_j'' + nu_j^2 x_j + ... = 0 with forces cos(m eta_l), eta_l = Omega_l t + the detuning.
+/// What is averaged: x_j'' + nu_j^2 x_j + ... = 0 with forces cos(m eta_l), eta_l = Omega_l t + the detuning; frequencies
+/// in multiples of the unit.
 #[derive(Clone, Debug)]
 pub struct System {
     /// The left sides, x_j'' alone; where there are shapes, of the modes.
     pub equations: Vec<Expression>,
+    /// What frequencies and the rates of forces are multiples of; nothing where that is 1.
+    pub unit: Option<Unit>,
     /// nu_j; of an irrational one a rational number beside it: within 2^-200, in a flow within its radius
     /// ([`Enclosed`](super::Enclosed)).
     pub frequencies: Vec<Rational>,
@@ -138,6 +143,7 @@ pub(super) struct Prepared {
     pub equations: Vec<Expression>,
     pub forces: Vec<Phase>,
     pub independent: Vec<String>,
+    pub unit: Option<Unit>,
     pub angles: Angles,
     pub mass: Matrix,
     pub stiffness: Matrix,
@@ -187,20 +193,19 @@ impl Prepared {
         for name in needed.union(&rates) {
             match cards(name) {
                 Some(value) => drop(bound.insert(name.clone(), rational(name, &value)?)),
-                None if needed.contains(name) => {
-                    return Err(ResonanceError::Unset { name: name.clone() }.into());
-                }
+                None if needed.contains(name) => {}
                 None => independent.push(name.clone()),
             }
         }
         let equations = put_in(&equations, &bound);
-        let InPhases { phases: forces, equations, angles } =
-            phases(&equations, &independent, names)?;
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
-        let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| {
+        let entries = parts.iter().flat_map(|p| p.stiffness.values());
+        let unit = Unit::symbol(parts.iter().flat_map(|p| p.mass.values()), entries)?;
+        let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>, unit: Option<&Unit>| {
+            let number = |e: &Expression| unit.map_or(e.as_number(), |unit| unit.multiples(e));
             let entry = |p: &Linear, j| match of(p).get(&j) {
                 None => Ok(Rational::new()),
-                Some(e) => e.as_number().ok_or_else(|| ResonanceError::IrrationalFactor {
+                Some(e) => number(e).ok_or_else(|| ResonanceError::IrrationalFactor {
                     factor: names.shown(e),
                     unknown: names.0.unknown(j),
                 }),
@@ -208,8 +213,18 @@ impl Prepared {
             let row = |p| (0..parts.len()).map(|j| entry(p, j)).collect();
             parts.iter().map(row).collect::<Result<Matrix, _>>()
         };
-        let (mass, stiffness) = (matrix(&|p| &p.mass)?, matrix(&|p| &p.stiffness)?);
-        Ok(Self { equations, forces, independent, angles, mass, stiffness, bound })
+        let (mass, stiffness) =
+            (matrix(&|p| &p.mass, None)?, matrix(&|p| &p.stiffness, unit.as_ref())?);
+        let root = || {
+            let squares = spectrum(&mass, &stiffness).ok()?.squares;
+            Unit::root(&squares, &leading_rates(&equations, names).ok()?)
+        };
+        let unit = unit.or_else(|| root().filter(|_| independent.is_empty()));
+        let named = |e: &Expression| unit.as_ref().map_or_else(|| e.clone(), |unit| unit.named(e));
+        let equations: Vec<_> = equations.iter().map(named).collect();
+        let InPhases { phases: forces, equations, angles } =
+            phases(&equations, (unit.as_ref(), &independent), names)?;
+        Ok(Self { equations, forces, independent, unit, angles, mass, stiffness, bound })
     }
 }
 
@@ -225,21 +240,33 @@ impl System {
         let prepared = Prepared::of(equations, given, cards, names)?;
         let (mass, stiffness) = (&prepared.mass, &prepared.stiffness);
         let irrational = || ResonanceError::NoRationalForm;
-        let (modes, algebraic) = match spectrum(mass, stiffness) {
+        let unit = prepared.unit;
+        // Without a number nothing is enclosed.
+        let symbol = unit.clone().filter(|unit| unit.square.is_none());
+        let enclosed = || symbol.as_ref().map_or(Ok(()), |unit| Err(unit.unset()));
+        let (mut modes, algebraic) = match spectrum(mass, stiffness) {
             Err(ResonanceError::NoRationalForm) => {
+                enclosed()?;
                 let found = AlgebraicModes::of(mass, stiffness).ok_or_else(irrational)?;
                 (found.spectrum().ok_or_else(irrational)?, Some(found))
             }
             other => (other?, None),
         };
+        unit.iter().for_each(|unit| unit.scaled(&mut modes.squares));
         let frequencies = modes.frequencies_nearby()?;
         let squares = modes.squares.clone();
-        let equations = separated(&prepared.equations, &modes, algebraic.as_ref(), names)?;
+        let mut equations = separated(&prepared.equations, &modes, algebraic.as_ref(), names)?;
+        if let Some(unit) = &unit {
+            let own = equations.into_iter().zip(&squares).enumerate();
+            equations = own.map(|(j, (e, square))| unit.with_squares(e, j, square)).collect();
+        }
         let detunings = prepared.forces.iter().flat_map(|phase| &phase.detuning);
         let mut symbols = symbols(equations.iter().chain(detunings), names);
-        symbols.retain(|name| !prepared.independent.contains(name));
+        let is_unit = |name: &String| unit.as_ref().is_some_and(|unit| unit.name == *name);
+        symbols.retain(|name| !prepared.independent.contains(name) && !is_unit(name));
         let system = Self {
             equations,
+            unit,
             frequencies,
             squares,
             forces: prepared.forces,
@@ -251,6 +278,9 @@ impl System {
             bound: prepared.bound,
             beside: None,
         };
+        if !system.is_exact() {
+            enclosed()?;
+        }
         if !system.is_exact() && !system.independent.is_empty() {
             // Nothing says that they are independent of square roots.
             return Err(modes_refused(&system.squares).into());
@@ -258,7 +288,7 @@ impl System {
         Ok(if detune && system.is_exact() { system.detuned() } else { system })
     }
 
-    /// Whether all frequencies are rational numbers.
+    /// Whether all frequencies are rational multiples of the unit.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         let square = |nu: &Rational| nu.clone().square();
@@ -266,7 +296,20 @@ impl System {
             && self.frequencies.iter().zip(&self.squares).all(|(nu, known)| square(nu) == *known)
     }
 
-    /// Omega of the only force, where it is a number; else 0.
+    /// The first frequency without a value that coefficients are divided by.
+    #[must_use]
+    pub fn open_frequency(&self) -> Option<&String> {
+        let unit = self.unit.as_ref().filter(|unit| unit.square.is_none());
+        unit.map(|unit| &unit.name).or(self.independent.first())
+    }
+
+    /// The value of the unit; nothing where it is a symbol without one.
+    #[must_use]
+    pub fn unit_value(&self, values: &dyn Fn(&str) -> Option<Exact>, balls: Balls) -> Option<Ball> {
+        self.unit.as_ref().map_or_else(|| Some(balls.one()), |unit| unit.value(values, balls))
+    }
+
+    /// Omega of the only force, where it is a multiple of the unit; else 0.
     #[must_use]
     pub fn force(&self) -> Rational {
         match &self.forces[..] {

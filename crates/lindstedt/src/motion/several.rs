@@ -31,7 +31,8 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
     let delayed = problem.equations().flat_map(Expression::nodes).any(Expression::is_delayed);
     if delayed || start.history.is_some() || start.perturbation.is_some() {
         let message = "several unknowns are integrated from a state, without a delay";
-        return Err(Refused::no_answer("several-unknowns", message, "").into());
+        let hint = "`lindstedt derive` averages a delay of order eps: eps*x(t - T)";
+        return Err(Refused::no_answer("several-unknowns", message, hint).into());
     }
     let small = problem.small.to_string();
     let mut state = state(start, &problem, &parameters)?;

@@ -17,10 +17,12 @@ use lindstedt_simulate::SimulateError;
 const AT_RESONANCE: &str =
     "write the frequency at the resonance and the difference as a detuning: eps*sigma*x";
 
-/// What to do where the unit of time is a symbol.
-const SCALED_TIME: &str = "--set NAME=VALUE, for example 1/10; where all frequencies are multiples of one symbol omega0, write the \
-     equation in the time tau = omega0*t, divided by omega0^2: x'' stays, omega0^2*x becomes x, cos(omega0*t) cos(t), mu*x' \
-     mu*x' with mu/omega0 for mu, other coefficients c with c/omega0^2 for c; rates in t are omega0 times those in tau";
+/// What to do where a frequency has no value,
+const FREQUENCY: &str = "--set NAME=VALUE, for example 1/10; it stays a symbol where the factors of the linear part are squares of its \
+     rational multiples: omega0^2*x, 4*omega0^2*y";
+/// or the ratio of two is not known.
+const UNKNOWN_RATIO: &str = "write both as multiples of one, as (2*omega0)^2*y and cos((omega0 + eps*sigma)*t), the difference as a \
+     detuning eps*sigma, or --set both";
 
 /// What to do where a divisor may be zero. The frequencies are then roots of a polynomial, and taken to be independent.
 const EXACT_RELATION: &str = "no --digits decide it where it is zero, more of them where it is only small: give the \
@@ -47,7 +49,7 @@ impl Refusal for ExpandError {
             Self::UnknownName { .. } => (
                 Usage,
                 "no-value-set",
-                "--set NAME=VALUE; --normalisation free keeps parameters of the small terms as symbols",
+                "--set NAME=VALUE; --normalisation free keeps parameters as symbols, and so does --mode 1 (omega0^2*x for the linear part)",
             ),
             Self::UnsupportedTerm { term } if term.contains("t)") || term == "t" => (
                 NoAnswer,
@@ -81,16 +83,36 @@ impl Refusal for ResonanceError {
                 "forces are cos(m*omega*t) of one omega, detuned together: cos(m*(1 + eps*sigma)*t)",
             ),
             Self::UndecidedDivisor { .. } => (Undecided, "undecided", EXACT_RELATION),
-            Self::NotAForce { .. } | Self::Acceleration { .. } | Self::Delay { .. } => {
+            Self::NotAForce { .. } | Self::Acceleration { .. } => {
                 (NoAnswer, "no-method", "`lindstedt simulate` takes it")
             }
-            Self::NotWeaklyNonlinear { .. } => {
-                (NoAnswer, "no-method", "a factor eps marks the small terms")
-            }
+            Self::Delay { .. } => (
+                NoAnswer,
+                "no-method",
+                "`lindstedt derive` without --mode and --unknown averages a delay of order eps; of one unknown \
+                 `lindstedt simulate` takes it as it is",
+            ),
+            Self::NotWeaklyNonlinear { term } if term.contains("(t - ") => (
+                NoAnswer,
+                "no-method",
+                "with a factor eps, eps*x(t - T), a delay is averaged; of one unknown `lindstedt derive --unknown NAME` finds the \
+                 Hopf points of a parameter, and `lindstedt simulate` takes it as it is",
+            ),
+            Self::NotWeaklyNonlinear { .. } => (
+                NoAnswer,
+                "no-method",
+                "a factor eps marks the small terms; `lindstedt simulate` takes the equation as it is",
+            ),
             Self::Equations { .. } => {
                 (Usage, "second-unknown", "one equation for every unknown, separated by `;`")
             }
-            Self::Unset { .. } => (Usage, "no-value-set", SCALED_TIME),
+            Self::Unset { .. } => (Usage, "no-value-set", FREQUENCY),
+            Self::IrrationalRate { .. } => (
+                NoAnswer,
+                "ratio-not-rational",
+                "a fraction near it, with the difference as eps*sigma; `lindstedt simulate` takes it as it is",
+            ),
+            Self::NoRatio { .. } => (Usage, "ratio-not-known", UNKNOWN_RATIO),
             Self::NotSought { .. } => {
                 (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
             }

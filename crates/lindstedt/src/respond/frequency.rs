@@ -21,15 +21,21 @@ pub(super) fn forcing_frequency(
     let beside = |value: &Rational| {
         let with = case.clone().with(&axis.name, Exact::Rational(value.clone()));
         let system = with.flow(1, work).ok()?.value.system;
-        Some((system.force(), system.beside?))
+        Some(((system.force(), system.beside?), system.unit))
     };
     let stride = axis.values.len().div_ceil(LOOKED_AT).max(1);
     let ends = axis.values.iter().step_by(stride).chain(axis.values.last());
     let values = ends.filter_map(|value| value.as_rational().cloned());
     let found: Vec<_> = values.filter_map(|value| Some((beside(&value)?, value))).collect();
+    if let Some(unit) = found.iter().find_map(|((_, unit), _)| unit.as_ref()) {
+        let message = format!("{} is a frequency in multiples of {}", axis.name, unit.name);
+        let hint = format!("a parameter for the detuning: cos(({} + eps*sigma)*t)", unit.name);
+        return Err(Refused::no_answer("no-response", message, hint).into());
+    }
+    let found: Vec<_> = found.into_iter().map(|((beside, _), value)| (beside, value)).collect();
     let moves = found.first().map(|((_, first), value)| {
         let shifted = value * Rational::from((1001, 1000));
-        let next = beside(&shifted).map(|(_, it)| Rational::from(&shifted / &it.rate));
+        let next = beside(&shifted).map(|((_, it), _)| Rational::from(&shifted / &it.rate));
         next == Some(Rational::from(value / &first.rate))
     });
     // Values that were not reached look as if they lay beside no resonance.
@@ -42,9 +48,7 @@ pub(super) fn forcing_frequency(
     };
     let factor = Rational::from(value / &first.rate);
     if !moves {
-        let message = format!("a frequency of the oscillator depends on {}", axis.name);
-        let hint = "only the frequency of the force varies; set others value by value";
-        return Err(Refused::no_answer("no-response", message, hint).into());
+        return Err(moving_frequency(&axis.name));
     }
     if let Some(((other, _), _)) = found.iter().find(|((other, _), _)| other != force) {
         let message = format!(
@@ -54,4 +58,11 @@ pub(super) fn forcing_frequency(
         return Err(Refused::usage("sweep", message, "one resonance at a time").into());
     }
     Ok(Some((Exact::Rational(value.clone()), factor, first.symbol.clone())))
+}
+
+/// That frequencies of the oscillator do not vary.
+pub(super) fn moving_frequency(name: &str) -> Error {
+    let message = format!("a frequency of the oscillator depends on {name}");
+    let hint = "only the frequency of the force varies; set others value by value";
+    Refused::no_answer("no-response", message, hint).into()
 }

@@ -1,7 +1,7 @@
 //! The slow flow of a question with its values, and what is shown of its states.
 
 use super::answer::{Estimate, Response};
-use super::frequency::forcing_frequency;
+use super::frequency::{forcing_frequency, moving_frequency};
 use super::{ORDER, Respond, SEARCHES, STEPS};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
@@ -77,8 +77,11 @@ impl<'a> Subject<'a> {
         let mut slow = asked(&case);
         let mut factor = None;
         let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
+        let is_unit = |slow: &SlowFlow, name: &String| {
+            slow.system.unit.as_ref().is_some_and(|unit| unit.name == *name)
+        };
         let open = |slow: &SlowFlow, name: &String| {
-            slow.system.symbols.contains(name) && !independent(slow, name)
+            slow.system.symbols.contains(name) && !independent(slow, name) && !is_unit(slow, name)
         };
         if let Some(axis) = &question.sweep
             && axis.name != small
@@ -90,6 +93,8 @@ impl<'a> Subject<'a> {
                 factor = Some(ratio);
                 swept[0] = Some(symbol);
                 slow = asked(&case.clone().with(name, value));
+            } else if slow.as_ref().is_ok_and(|slow| is_unit(slow, name)) {
+                return Err(moving_frequency(name));
             } else if let Ok(slow) = &slow {
                 let rate = independent(slow, name);
                 return Err(if rate { no_resonance(name) } else { no_part(name) });
@@ -173,6 +178,12 @@ impl<'a> Subject<'a> {
         if self.slow.enclosed.is_some() { "certified" } else { "exact" }
     }
 
+    /// The value of the unit of frequency.
+    fn unit(&self) -> Option<Ball> {
+        let value = |name: &str| self.oscillator.value(name);
+        self.slow.system.unit_value(&value, Balls::new(BITS))
+    }
+
     /// The value of a symbol cos(phi) or sin(phi).
     fn wave(&self, name: &str) -> Option<Ball> {
         let swept = |name: &str| self.swept.iter().flatten().any(|it| it == name);
@@ -185,8 +196,11 @@ impl<'a> Subject<'a> {
         let small = &self.oscillator.problem().small;
         let detuning = |name: &str| {
             let beside = self.slow.system.beside.as_ref().filter(|it| it.symbol == name)?;
-            let away = &beside.rate - self.slow.system.force();
-            Some(Value::Rational(away / self.small.as_ref()?))
+            let away = (&beside.rate - self.slow.system.force()) / self.small.as_ref()?;
+            Some(match &self.slow.system.unit {
+                None => Value::Rational(away),
+                Some(_) => Value::from(&Balls::new(BITS).mul_rational(&self.unit()?, &away)),
+            })
         };
         let known = |name: &str| match self.oscillator.value(name) {
             Some(value) => Some(Value::from(&value)),
@@ -319,6 +333,7 @@ impl<'a> Subject<'a> {
     /// w of the x_j, x_j' at t = 0: z to leading order.
     pub(super) fn start(&self, from: &[[f64; 2]]) -> Vec<f64> {
         let values = doubles(&self.values([None, None]));
+        let unit = self.unit().map_or(f64::NAN, |unit| unit.midpoint().to_f64());
         let own = |j: usize| match self.slow.system.modes() {
             None => from[j],
             Some(rows) => rows[j].iter().zip(from).fold([0.0, 0.0], |[x, v], (share, pair)| {
@@ -327,7 +342,7 @@ impl<'a> Subject<'a> {
         };
         let start = |(j, nu): (usize, &Rational)| {
             let ([x, velocity], [forced, rate]) = (own(j), forced_part(&self.slow, j, &values));
-            [0.5 * (x - forced), -0.5 * (velocity - rate) / nu.to_f64()]
+            [0.5 * (x - forced), -0.5 * (velocity / unit - rate) / nu.to_f64()]
         };
         self.slow.system.frequencies.iter().enumerate().flat_map(start).collect()
     }
@@ -438,7 +453,7 @@ fn not_whole() -> Error {
 
 /// Refuses a slow flow that depends on frequencies without a value.
 fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
-    let Some(name) = slow.system.independent.first() else { return Ok(()) };
+    let Some(name) = slow.system.open_frequency() else { return Ok(()) };
     let problem = oscillator.problem().name.to_string();
     Err(DerivationError::Unset { problem, name: name.clone() }.into())
 }

@@ -8,6 +8,7 @@ use lindstedt_derivation::resonance::{Motion, slow_flow};
 use lindstedt_derivation::{DerivationError, all_values};
 use lindstedt_equation::Expression;
 use lindstedt_expand::ExpandError;
+use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
     Digits, Integrator, Model, Parameters, Real, Report, Settings as Precision,
 };
@@ -64,7 +65,8 @@ impl Resonant {
         }
         let slowest = flow.system.frequencies.iter().min().cloned().unwrap_or_default();
         let bits = Digits::for_digits(digits + 16).bits();
-        let times = sample_times(question, &Float::with_val(bits, &slowest));
+        let unit = flow.system.unit_value(&|_| None, Balls::new(bits)).ok_or(Error::NoValue)?;
+        let times = sample_times(question, &(Float::with_val(bits, &slowest) * unit.midpoint()));
         let values = oscillator.rational_values();
         let amplitude = values.get("amplitude").cloned().unwrap_or_else(|| 1.into());
         let parameters = Parameters::of_problem(problem, oscillator.given());

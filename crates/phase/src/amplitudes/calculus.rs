@@ -315,6 +315,12 @@ impl<S: Scalars> Amplitudes<S> {
         };
         let size = middle(&self.mul(&factors[0], &factors[1]));
         let size = size.zip(middle(&unknown.square)).map(|(size, own)| size / own);
+        let ratio = || match (&unknown.rate.as_ref()?[..], &lambda[..]) {
+            // Multiples of one symbol.
+            ([0, nu], [0, lambda]) => Some(Rational::from((*lambda, *nu))),
+            _ => None,
+        };
+        let size = size.or_else(|| Some(Rational::from(1) - ratio()?.square()));
         Ok(Divisor { inverse: self.mul(&a, &b), size })
     }
 

@@ -63,6 +63,20 @@ impl<S: Scalars> Amplitudes<S> {
         self
     }
 
+    /// The algebra whose only generator is a symbol; nothing without that symbol.
+    #[must_use]
+    pub fn with_unit(mut self, name: &str) -> Option<Self> {
+        self.generators = vec![self.symbol(name)?];
+        self.unknowns = self.of_own_rates();
+        Some(self)
+    }
+
+    /// The algebra whose symbols have inverses.
+    #[must_use]
+    pub fn with_inverses(self) -> Self {
+        Self { units: true, ..self }
+    }
+
     /// The algebra that divides by nu^2 - Omega^2: the force's rate is the symbol `omega`, and `inverse` becomes the
     /// symbol D. Nothing where nu contains one of them or is no product.
     #[must_use]

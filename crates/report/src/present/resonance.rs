@@ -5,7 +5,7 @@ use super::{Present, both, equation};
 use crate::Document;
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::derivation::resonance::{
-    NormalMode, Polar, Sought, Terms, print_name, print_turns,
+    NormalMode, Polar, Sought, Terms, Unit, print_name, print_turns,
 };
 use lindstedt::{Answer, Averaged, SlowFlow};
 
@@ -65,7 +65,8 @@ impl Present for Answer<NormalMode> {
             Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
         page = page.words(format!(
             "Normal mode {}: nu^2 = {}; a is the amplitude of its first harmonic, rho = a^2, psi' = Omega.",
-            mode.mode, mode.square
+            mode.mode,
+            mode.print_square(Style::Text)
         ));
         page = page.formula(both(|style| {
             let line = shortened(mode.print_in_amplitude(&mode.frequency_squared, style), style);
@@ -97,8 +98,16 @@ impl Present for Answer<NormalMode> {
                 }));
             }
         }
+        if let Some(unit) = &mode.unit {
+            page = page.words(positive(unit));
+        }
         page.words(residual(mode.checked_orders))
     }
+}
+
+/// What is taken of a unit of frequency that is a symbol.
+fn positive(unit: &Unit) -> String {
+    format!("Without a value, and positive: {}, of which the frequencies are multiples.", unit.name)
 }
 
 /// What became of the substitution into the equation.
@@ -184,8 +193,13 @@ impl Board<'_> {
                  there is a resonance, and the expansion does not hold."
             ));
         }
+        if let Some(unit) = flow.system.unit.iter().find(|unit| unit.square.is_none()) {
+            page = page.words(positive(unit));
+        }
         let Some(beside) = &flow.system.beside else { return page };
-        let (rate, at, small) = (&beside.rate, flow.system.force(), &flow.problem.small);
+        let [rate, at] =
+            [&beside.rate, &flow.system.force()].map(|rate| flow.print_multiple(rate, Style::Text));
+        let small = &flow.problem.small;
         let symbol = &beside.symbol;
         page.words(format!("{symbol} = ({rate} - {at})/{small}: the force is detuned."))
     }

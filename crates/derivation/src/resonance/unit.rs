@@ -1,0 +1,191 @@
+//! The unit of frequency: 1, a symbol, or the square root of a rational number, of which all nu_j and, beside independent
+//! parameters, all Omega_l are rational multiples.
+//!
+//! Over such a unit u every divisor L_j(i lambda) is u^2 times a rational number, so that coefficients are
+//! polynomials in u and 1/u: u is a symbol of the algebra that has an inverse, what is resonant is decided by the rational
+//! multiples, and the residual is that of the equations as they are written. Of u = sqrt(d) the square is put in at the end: c u^n becomes
+//! c d^(n/2) or c d^((n - 1)/2) sqrt(d).
+
+use super::{ResonanceError, SlowFlow, Terms};
+use lindstedt_equation::Expression;
+use lindstedt_equation::classify::rational_root;
+use lindstedt_equation::monomials::{Monomial, expand};
+use lindstedt_number::Exact;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_phase::amplitudes::AmplitudeTerm;
+use rug::ops::Pow;
+use rug::{Integer, Rational};
+use std::collections::BTreeMap;
+
+/// The highest power of a number that is formed.
+const HIGHEST: u32 = 50;
+
+/// A unit other than 1: a positive number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// Its name among the symbols: `omega0`, `sqrt(2)`.
+    pub name: String,
+    /// Its square where it is the root of a rational number.
+    pub square: Option<Rational>,
+}
+
+impl Unit {
+    /// The symbol of which the squares are the factors of the linear part; nothing where these are numbers.
+    ///
+    /// # Errors
+    /// [`ResonanceError::NoRatio`] of two symbols, [`ResonanceError::Unset`] of one that does not occur as its square.
+    pub(super) fn symbol<'a>(
+        mass: impl Iterator<Item = &'a Expression>,
+        stiffness: impl Iterator<Item = &'a Expression>,
+    ) -> Result<Option<Self>, ResonanceError> {
+        if let Some(name) = mass.flat_map(Expression::parameters).next() {
+            return Err(ResonanceError::Unset { name });
+        }
+        let (mut unit, mut number): (Option<String>, Option<Rational>) = (None, None);
+        for (monomial, q) in stiffness.filter_map(expand).flat_map(|all| all.terms) {
+            let mut names = monomial.parameters.into_iter();
+            let Some((name, power)) = names.next() else {
+                number = Some(q);
+                continue;
+            };
+            let first = unit.get_or_insert_with(|| name.clone()).clone();
+            if names.next().is_some() || power != 2 {
+                return Err(ResonanceError::Unset { name });
+            }
+            if first != name {
+                return Err(ResonanceError::NoRatio { first, second: name });
+            }
+        }
+        if let (Some(unit), Some(number)) = (&unit, number) {
+            let (first, second) = (number.to_string(), format!("{unit}^2"));
+            return Err(ResonanceError::NoRatio { first, second });
+        }
+        Ok(unit.map(|name| Self { name, square: None }))
+    }
+
+    /// The root of which all frequencies are rational multiples, and all rates of forces, where there is one.
+    pub(super) fn root(squares: &[Rational], rates: &[Expression]) -> Option<Self> {
+        let first = squares.first().filter(|square| **square > 0)?;
+        let mut square = Integer::from(first.numer() * first.denom());
+        for p in 2..1000u32 {
+            let factor = p * p;
+            while square.is_divisible_u(factor) {
+                square /= factor;
+            }
+        }
+        let unit = Self { name: format!("sqrt({square})"), square: Some(square.into()) };
+        let all = squares.iter().all(|square| unit.multiple(square).is_some());
+        let rate = |rate: &Expression| {
+            let all = expand(&unit.named(rate));
+            all.is_some_and(|all| all.terms.keys().all(|monomial| unit.is_alone(monomial)))
+        };
+        let irrational = rational_root(first).is_none();
+        (irrational && all && rates.iter().all(rate)).then_some(unit)
+    }
+
+    /// q with sqrt(square) = q u, of a root.
+    fn multiple(&self, square: &Rational) -> Option<Rational> {
+        rational_root(&Rational::from(square / self.square.as_ref()?))
+    }
+
+    /// Whether a monomial is a number times u.
+    fn is_alone(&self, monomial: &Monomial) -> bool {
+        monomial.parameters.len() == 1 && monomial.parameters.get(&self.name) == Some(&1)
+    }
+
+    /// e with multiples of u in the place of the roots of numbers that are such.
+    pub(super) fn named(&self, e: &Expression) -> Expression {
+        e.map(&|e| {
+            let Expression::Power(base, n) = e else { return None };
+            let twice = Rational::from(n.as_number()? * 2);
+            let base = base.as_number().filter(|base| *base > 0)?;
+            let odd = twice.is_integer() && twice.numer().is_odd();
+            let whole = odd.then(|| (twice.numer() - Integer::from(1)).to_i32())?? / 2;
+            let whole = Some(whole).filter(|n| n.unsigned_abs() <= HIGHEST)?;
+            let factor = self.multiple(&base)? * Rational::from((&base).pow(whole));
+            Some(Expression::Number(factor) * self.expression())
+        })
+    }
+
+    /// That it has no value where one is needed.
+    pub(super) fn unset(&self) -> ResonanceError {
+        ResonanceError::Unset { name: self.name.clone() }
+    }
+
+    pub(super) fn expression(&self) -> Expression {
+        Expression::parameter(&self.name)
+    }
+
+    /// The multiples of u^2 that factors of the linear part are.
+    pub(super) fn multiples(&self, factor: &Expression) -> Option<Rational> {
+        if self.square.is_some() {
+            return factor.as_number();
+        }
+        let all = expand(factor)?;
+        let square = |(m, q): (&Monomial, &Rational)| {
+            let is_square = m.parameters.get(&self.name) == Some(&2);
+            is_square.then(|| q.clone())
+        };
+        all.terms.iter().map(square).sum()
+    }
+
+    /// The linear equations of [`super::System`] have the squares of frequencies as numbers; with multiples of u^2 in their
+    /// place where u is a root.
+    pub(super) fn with_squares(
+        &self,
+        equation: Expression,
+        j: usize,
+        own: &Rational,
+    ) -> Expression {
+        let Some(d) = &self.square else { return equation };
+        let square = Expression::Number(own.clone()) * self.expression().pow(2)
+            - Expression::Number(Rational::from(own * d));
+        (equation + square * Expression::unknown(j, 0)).canonical()
+    }
+
+    /// Its value, of a symbol by its name.
+    pub(super) fn value(
+        &self,
+        values: &dyn Fn(&str) -> Option<Exact>,
+        balls: Balls,
+    ) -> Option<Ball> {
+        let root = || self.square.clone().map(Exact::root);
+        Some(root().or_else(|| values(&self.name))?.ball(balls))
+    }
+
+    /// The squares of frequencies in units of u^2, of those of a root.
+    pub(super) fn scaled(&self, squares: &mut [Rational]) {
+        if let Some(d) = &self.square {
+            squares.iter_mut().for_each(|square| *square /= d);
+        }
+    }
+}
+
+impl SlowFlow {
+    /// With the square of a root put in.
+    pub(super) fn with_root(mut self) -> Self {
+        let unit =
+            self.system.unit.as_ref().and_then(|unit| unit.square.as_ref().map(|d| (unit, d)));
+        let Some((unit, d)) = unit else { return self };
+        let of_name = self.system.symbols.iter().position(|name| *name == unit.name);
+        let Some(place) = of_name.map(|place| self.first_symbol() + place) else { return self };
+        let lists = [&mut self.flow, &mut self.solution, &mut self.detuning];
+        for terms in lists.into_iter().flatten().flatten().chain(&mut self.energy) {
+            *terms = reduced(std::mem::take(terms), place, d);
+        }
+        self
+    }
+}
+
+fn reduced(terms: Terms, place: usize, square: &Rational) -> Terms {
+    let mut sum: BTreeMap<Vec<i32>, [Rational; 2]> = BTreeMap::new();
+    for AmplitudeTerm { mut exponents, re, im } in terms {
+        let pairs = exponents[place].div_euclid(2);
+        exponents[place] -= 2 * pairs;
+        let factor = Rational::from(square.pow(pairs));
+        let entry = sum.entry(exponents).or_default();
+        entry.iter_mut().zip([re, im]).for_each(|(sum, part)| *sum += part * &factor);
+    }
+    let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
+    kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+}
