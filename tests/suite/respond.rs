@@ -4,6 +4,7 @@
 
 use lindstedt::grid::Axis;
 use lindstedt::respond::{Response, State};
+use lindstedt::unstable::orbit::steady::{ComplexTerm, Flow, zero_near};
 use lindstedt::unstable::orbit::{Field, Kind, Request, Start, prove};
 use lindstedt::{Oscillator, Refusal, Respond, Status, Verify, Work};
 use rug::Rational;
@@ -476,4 +477,141 @@ fn sweeps_beside_an_irrational_mode() {
         assert!(curve.abs() < 1e-10 && slope.abs() < 1e-10, "{sigma} {r}: {curve:e} {slope:e}");
         assert_eq!(number(&fold.amplitudes[1]), 0.0);
     }
+}
+
+/// The number of positive roots y of y (m^2 + (d - g y)^2) = c: one or, where the discriminant is positive, three, which
+/// cannot be negative.
+fn roots(m: f64, d: f64, g: f64, c: f64) -> usize {
+    // y^3 + p y^2 + q y + r, c > 0.
+    let [p, q, r] = [-2.0 * d / g, (m * m + d * d) / (g * g), -c / (g * g)];
+    let discriminant =
+        18.0 * p * q * r - 4.0 * p.powi(3) * r + p * p * q * q - 4.0 * q.powi(3) - 27.0 * r * r;
+    if discriminant > 0.0 { 3 } else { 1 }
+}
+
+/// The number of positive roots of m^2 + (d - g y)^2 = c + e y.
+fn pairs(m: f64, d: f64, g: f64, [c, e]: [f64; 2]) -> usize {
+    let [half, last] = [(d * g + e / 2.0) / (g * g), (m * m + d * d - c) / (g * g)];
+    let root = (half * half - last).sqrt();
+    [half - root, half + root].iter().filter(|y| **y > 0.0).count()
+}
+
+/// Numbers of states of order one by hand (Nayfeh and Mook, chapters 4 to 6), w' = c - (m + i d) w + i g |w|^2 w and the like
+/// with y = |w|^2, at detunings of either sign.
+#[test]
+fn numbers_of_states_against_the_response_polynomial() {
+    type Count = fn(f64) -> usize;
+    let cases: [(&str, Count); 8] = [
+        ("x'' + x + eps*(x'/5 + x^3 + x^2/3) = eps*cos((1 + eps*s)*t)/2", |s| {
+            roots(0.1, s, 1.5, 1.0 / 64.0)
+        }),
+        ("x'' + x + eps*(x'/5 + x^3 + x(t - 1)/5) = eps*cos((1 + eps*s)*t)/2", |s| {
+            let (sin, cos) = 1f64.sin_cos();
+            roots(0.1 - sin / 10.0, s - cos / 10.0, 1.5, 1.0 / 64.0)
+        }),
+        ("x'' + x + eps*(x'/5 + x^3) = 2*cos((1/3 + eps*s)*t)", |s| {
+            let force = 729.0 / 8192.0 * 8.0;
+            roots(0.1, 3.0 * s - 243.0 / 256.0 * 4.0, 1.5, force * force)
+        }),
+        ("x'' + x + eps*(x'/5 + x^3) = 10*cos((3 + eps*s)*t)", |s| {
+            let force = 30.0 / 32.0;
+            1 + 3 * pairs(0.1, s / 3.0 - 300.0 / 256.0, 1.5, [0.0, force * force])
+        }),
+        ("x'' + x + eps*(x'/5 + x^3 + x*cos(2*(1 + eps*s)*t)) = 0", |s| {
+            1 + 2 * pairs(0.1, s, 1.5, [1.0 / 16.0, 0.0])
+        }),
+        // Modes with the frequencies 1 and sqrt 3, x = q_1 + q_2, y = q_1 - q_2: the second is damped alone.
+        (
+            "x'' + 2*x - y + eps*(x'/5 + x^3) = eps*cos((1 + eps*s)*t); y'' + 2*y - x + eps*y'/5",
+            |s| roots(0.1, s, 0.75, 1.0 / 64.0),
+        ),
+        (
+            "x'' + x + eps*(x'/5 + x^3 + x*y) = eps*cos((1 + eps*s)*t)/2; y'' + 2*y + eps*(y'/5 + 4*x^2 + y^3)",
+            |s| roots(0.1, s, 1.5, 1.0 / 64.0),
+        ),
+        // A mode that the other one detunes and nothing drives.
+        (
+            "x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*s)*t)/2; y'' + 16*y + eps*(y'/5 + x^2*y + y^3)",
+            |s| roots(0.1, s, 1.5, 1.0 / 64.0),
+        ),
+    ];
+    let mut numbers = std::collections::BTreeSet::new();
+    for (equation, count) in cases {
+        for (text, s) in [("-1", -1.0), ("1/4", 0.25), ("1", 1.0), ("7/2", 3.5)] {
+            let found = ask(equation, &[("eps", "1/10"), ("s", text)], &to_order(1));
+            let states = &found.states[0];
+            assert!(found.complete && states.count_proved, "{equation} at {text}");
+            assert_eq!(states.count, count(s), "{equation} at {text}");
+            numbers.insert(states.count);
+        }
+    }
+    assert_eq!(numbers.into_iter().collect::<Vec<_>>(), [1, 3, 5, 7]);
+}
+
+/// Two modes 1:3 in the box of order one, far out in which the truncated series says nothing: the moduli exclude almost all of it. Newton's
+/// method with the slow flow itself, from a grid of moduli and phases, finds no other state.
+#[test]
+fn two_modes_in_the_whole_box() {
+    let equation = "x'' + 5*x - 4*y + eps*(x'/5 + x^3) = eps*cos((1 + eps/2)*t); \
+                    y'' + 5*y - 4*x + eps*y'/5 = 0";
+    let small = Rational::from((1, 10));
+    let mut known = Vec::new();
+    for (order, most) in [(1, 900), (2, 1500), (3, 1700)] {
+        let found = ask(equation, &[("eps", "1/10")], &to_order(order));
+        let states = &found.states[0];
+        println!("order {order}: {} boxes", states.boxes);
+        assert_eq!((states.count, states.count_proved), (3, true), "order {order}");
+        assert!(states.boxes < most, "order {order}: {} boxes", states.boxes);
+        let read = |text: &str| text.parse::<f64>().unwrap();
+        let at = |state: &State| -> Vec<f64> {
+            let pairs = state.amplitudes.iter().zip(&state.phases);
+            let state = |(a, phi): (&lindstedt::Number, &Option<lindstedt::Number>)| {
+                let (sin, cos) = read(&phi.as_ref().unwrap().decimal).sin_cos();
+                [cos, sin].map(|part| read(&a.decimal) / 2.0 * part)
+            };
+            pairs.flat_map(state).collect()
+        };
+        known = states.list.iter().map(at).collect();
+        assert!(found.amplitude_limit.value > 7.9);
+    }
+    let slow = Oscillator::parse(equation).unwrap().slow_flow(3, &Work::default()).unwrap().value;
+    let mode = |j: usize, turn: i64| {
+        let term = |amplitudes: Vec<u32>, re: Rational, im: Rational| ComplexTerm {
+            amplitudes,
+            parameters: Vec::new(),
+            re,
+            im,
+            radius: 0.0,
+        };
+        let mut terms = Vec::new();
+        for (n, order) in slow.flow[j].iter().enumerate().skip(1) {
+            let scale = (1..n).fold(Rational::from(1), |scale, _| scale * &small);
+            terms.extend(order.iter().map(|t| {
+                let amplitudes = t.exponents[..4].iter().map(|e| u32::try_from(*e).unwrap());
+                term(amplitudes.collect(), (&t.re * &scale).into(), (&t.im * &scale).into())
+            }));
+        }
+        // z_j = w_j e^{i k eta}, eta' = 1 + eps/2.
+        let mut own = vec![0; 4];
+        own[2 * j] = 1;
+        terms.push(term(own, Rational::new(), Rational::from((-turn, 2))));
+        terms
+    };
+    let system = Flow::of_complex(&[mode(0, 1), mode(1, 3)], &[]).system(&[]);
+    let mut reached = [false; 3];
+    for index in 0..12 * 3 * 6 * 3 {
+        let [r, s] = [0.3 * (1.0 + f64::from(index % 12)), 1.1 * f64::from(index / 12 % 3)];
+        let phase =
+            |k: i32, n: i32| 0.3 + std::f64::consts::TAU * f64::from(index / k % n) / f64::from(n);
+        let [(b, a), (d, c)] = [phase(36, 6), phase(216, 3)].map(f64::sin_cos);
+        let Some(zero) = zero_near(&system, &[r * a, r * b, s * c, s * d], &[1e-3; 4]) else {
+            continue;
+        };
+        let at = zero.middle();
+        if at.chunks(2).all(|pair| pair[0].hypot(pair[1]) < 3.95) {
+            let near = |known: &Vec<f64>| known.iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
+            reached[known.iter().position(near).unwrap()] = true;
+        }
+    }
+    assert_eq!(reached, [true; 3]);
 }

@@ -30,6 +30,7 @@
 //! # Ok::<(), &str>(())
 //! ```
 
+mod balance;
 mod branch;
 mod change;
 mod flow;

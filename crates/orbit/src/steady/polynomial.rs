@@ -177,28 +177,6 @@ pub struct System {
     largest: u32,
 }
 
-/// The sum of two rows, each times a variable and a sign.
-fn combined(parts: [(&Vec<Term>, usize, f64); 2]) -> Vec<Term> {
-    let mut sums: BTreeMap<Vec<(usize, u32)>, Interval> = BTreeMap::new();
-    for (term, factor, sign) in
-        parts.into_iter().flat_map(|(row, factor, sign)| row.iter().map(move |t| (t, factor, sign)))
-    {
-        let mut powers = term.powers.clone();
-        match powers.binary_search_by_key(&factor, |(i, _)| *i) {
-            Ok(place) => powers[place].1 += 1,
-            Err(place) => powers.insert(place, (factor, 1)),
-        }
-        let sum = sums.entry(powers).or_insert(Interval::ZERO);
-        *sum = *sum + Interval::point(sign) * term.coefficient;
-    }
-    let term = |(powers, coefficient): (_, Interval)| Term {
-        near: coefficient.middle(),
-        coefficient,
-        powers,
-    };
-    sums.into_iter().map(term).collect()
-}
-
 impl System {
     /// The polynomials as functions of the variables for which `values` has nothing, in their order; a variable
     /// beyond the list is free if it occurs in a polynomial or is below `least`.
@@ -252,23 +230,6 @@ impl System {
         let powers = rows.iter().flatten().flat_map(|term| &term.powers);
         let largest = powers.map(|(_, e)| *e).max().unwrap_or(0);
         Self { rows, variables, largest }
-    }
-
-    /// Re and Im of conj(w_j) G_j, for those pairs w_j = (x_2j, x_2j+1) that are a factor of every term of the polynomials
-    /// G_j = (2j, 2j+1): zero where these are. The phase of such a w_j may be free or almost so; these say that
-    /// Re (conj(w) w') = |w| |w|' vanishes nowhere, which the polynomials themselves show on small boxes alone.
-    pub(crate) fn turned_back(&self) -> Option<Self> {
-        let mut rows = Vec::new();
-        for (j, pair) in self.rows.chunks_exact(2).enumerate() {
-            let own = [2 * j, 2 * j + 1];
-            let has = |term: &Term| term.powers.iter().any(|(i, _)| own.contains(i));
-            if pair.iter().flatten().all(has) {
-                let [u, v] = own;
-                rows.push(combined([(&pair[0], u, 1.0), (&pair[1], v, 1.0)]));
-                rows.push(combined([(&pair[1], u, 1.0), (&pair[0], v, -1.0)]));
-            }
-        }
-        (!rows.is_empty()).then_some(Self { rows, largest: self.largest + 1, ..*self })
     }
 
     /// The number of polynomials.

@@ -4,8 +4,9 @@
 //! are small. So that there is none is shown on boxes of the other unknowns and the |w_k|^2, and what is left are the states
 //! with w_j = 0, of fewer unknowns.
 
+use super::balance::Balance;
 use super::krawczyk::{Region, Zero, middle};
-use super::search::{Found, Limits, all_zeros, modulus};
+use super::search::{Found, Limits, halved, modulus, zeros_with_moduli};
 use super::{ComplexTerm, Flow, System, Value};
 use lindstedt_number::interval::Interval;
 use rug::Rational;
@@ -154,11 +155,7 @@ fn excluded(system: &System, region: &[Interval], pairs: usize, limits: &Limits)
         };
         let large = (0..n).filter(|j| part[*j].width() > smallest[*j]);
         let side = large.max_by(|a, b| change(a).total_cmp(&change(b)))?;
-        stack.extend(part[side].halves().map(|half| {
-            let mut piece = part.clone();
-            piece[side] = half;
-            piece
-        }));
+        stack.extend(halved(&part, side));
     }
     Some(boxes)
 }
@@ -175,6 +172,11 @@ pub fn all_states(
     let fewer = Quiet::of(&flow.complex).and_then(|it| it.all_zeros(flow, values, reach, limits));
     fewer.or_else(|| {
         let region = vec![Interval::new(-reach, reach); flow.unknowns()];
-        all_zeros(&flow.system(values), &region, limits)
+        let most = limits.modulus.unwrap_or_else(|| modulus(&region).high());
+        let open = Balance::of(flow, values).map(|balance| balance.open(most, limits));
+        let cells = open.as_ref().map(|(cells, _)| &cells[..]);
+        let mut found = zeros_with_moduli(&flow.system(values), &region, cells, limits)?;
+        found.boxes += open.map_or(0, |(_, looked_at)| looked_at);
+        Some(found)
     })
 }

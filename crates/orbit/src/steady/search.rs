@@ -74,14 +74,23 @@ impl Found {
 /// ```
 #[must_use]
 pub fn all_zeros(system: &System, region: &[Interval], limits: &Limits) -> Option<Found> {
+    zeros_with_moduli(system, region, None, limits)
+}
+
+/// The same, where zeros have their moduli of (x_0, x_1), (x_2, x_3), ... in one of the cells given.
+pub(super) fn zeros_with_moduli(
+    system: &System,
+    region: &[Interval],
+    cells: Option<&[Region]>,
+    limits: &Limits,
+) -> Option<Found> {
     let n = region.len();
     let fits = n > 0 && system.rows() == n && system.variables() == n;
     if !fits || region.iter().any(|x| !x.is_finite()) {
         return None;
     }
-    let turned_back = system.turned_back();
     let (zeros, open) = (Vec::new(), Vec::new());
-    let mut search = Search { system, turned_back, limits, zeros, open, boxes: 0 };
+    let mut search = Search { system, cells, limits, zeros, open, boxes: 0 };
     let stopped = !search.run(region);
     let meets = |zero: &Zero| meet(&zero.enclosure, region).is_some();
     search.zeros.retain(meets);
@@ -99,13 +108,20 @@ pub fn all_zeros(system: &System, region: &[Interval], limits: &Limits) -> Optio
     Some(Found { zeros, undecided, at_edge, boxes: search.boxes, stopped })
 }
 
+/// Enclosures of the moduli of (x_0, x_1), (x_2, x_3), ...; an odd last one stands alone.
+fn moduli(region: &[Interval]) -> impl Iterator<Item = Interval> {
+    let square = |pair: &[Interval]| pair.iter().fold(Interval::ZERO, |sum, x| sum + x.powi(2));
+    let root = |square: Interval| {
+        Interval::new(square.low().sqrt().next_down().max(0.0), square.high().sqrt().next_up())
+    };
+    region.chunks(2).map(move |pair| root(square(pair)))
+}
+
 /// An enclosure of the largest modulus of (x_0, x_1), (x_2, x_3), ...; an odd last one stands alone.
 pub(super) fn modulus(region: &[Interval]) -> Interval {
-    let square = |pair: &[Interval]| pair.iter().fold(Interval::ZERO, |sum, x| sum + x.powi(2));
-    let squares = region.chunks(2).map(square);
-    let (low, high) =
-        squares.fold((0.0f64, 0.0f64), |(low, high), x| (low.max(x.low()), high.max(x.high())));
-    Interval::new(low.sqrt().next_down().max(0.0), high.sqrt().next_up())
+    moduli(region).fold(Interval::ZERO, |most, r| {
+        Interval::new(most.low().max(r.low()), most.high().max(r.high()))
+    })
 }
 
 /// What a zero found in doubles may be beside the box that has it.
@@ -113,8 +129,8 @@ const ROUNDING: f64 = 1e-13;
 
 struct Search<'a> {
     system: &'a System,
-    /// What also vanishes at its zeros.
-    turned_back: Option<System>,
+    /// Where the moduli of its zeros are.
+    cells: Option<&'a [Region]>,
     limits: &'a Limits,
     zeros: Vec<Zero>,
     open: Vec<Region>,
@@ -125,7 +141,7 @@ impl Search<'_> {
     /// False when it was stopped.
     fn run(&mut self, region: &[Interval]) -> bool {
         let smallest: Vec<f64> = region.iter().map(|x| self.limits.smallest * x.width()).collect();
-        let mut stack = vec![region.to_vec()];
+        let mut stack = vec![self.reached(region)];
         while let Some(part) = stack.pop() {
             if self.zeros.iter().any(|zero| is_in(&part, &zero.unique_within)) {
                 continue;
@@ -133,15 +149,14 @@ impl Search<'_> {
             if self.limits.modulus.is_some_and(|most| modulus(&part).low() > most) {
                 continue;
             }
+            if !self.has_moduli(&part) {
+                continue;
+            }
             self.boxes += 1;
             if self.boxes > self.limits.boxes || self.limits.stop.asked() {
                 self.open.push(part);
                 self.open.append(&mut stack);
                 return false;
-            }
-            let values = self.turned_back.as_ref().map(|other| other.values(&part));
-            if values.is_some_and(|values| values.iter().any(|value| !value.contains(0.0))) {
-                continue;
             }
             let next = match krawczyk(self.system, &part) {
                 Verdict::None => continue,
@@ -165,6 +180,26 @@ impl Search<'_> {
             }
         }
         true
+    }
+
+    /// The part of a box that the moduli of zeros reach to.
+    fn reached(&self, region: &[Interval]) -> Region {
+        let largest = |j: usize| {
+            let ends =
+                self.cells.iter().flat_map(|cells| cells.iter().map(move |cell| cell[j].high()));
+            ends.fold(if self.cells.is_some() { 0.0 } else { f64::INFINITY }, f64::max)
+        };
+        let side = |(i, x): (usize, &Interval)| {
+            x.meet(Interval::new(-largest(i / 2), largest(i / 2))).unwrap_or(*x)
+        };
+        region.iter().enumerate().map(side).collect()
+    }
+
+    /// Whether a box has points with moduli that zeros may have.
+    fn has_moduli(&self, part: &[Interval]) -> bool {
+        let Some(cells) = self.cells else { return true };
+        let moduli: Region = moduli(part).collect();
+        cells.iter().any(|cell| meet(cell, &moduli).is_some())
     }
 
     /// Records the zero of a box that has exactly one; false where it cannot be told from another.
@@ -224,12 +259,17 @@ impl Search<'_> {
         };
         let large = (0..n).filter(|j| part[*j].width() > smallest[*j]);
         let side = large.max_by(|a, b| change(*a).total_cmp(&change(*b)))?;
-        Some(part[side].halves().map(|half| {
-            let mut piece = part.to_vec();
-            piece[side] = half;
-            piece
-        }))
+        Some(halved(part, side))
     }
+}
+
+/// A box cut in two.
+pub(super) fn halved(part: &[Interval], side: usize) -> [Region; 2] {
+    part[side].halves().map(|half| {
+        let mut piece = part.to_vec();
+        piece[side] = half;
+        piece
+    })
 }
 
 /// Whether a side has become much shorter.
@@ -290,11 +330,7 @@ pub fn bound(system: &System) -> Option<f64> {
             _ => {
                 let widest = |a: &usize, b: &usize| part[*a].width().total_cmp(&part[*b].width());
                 let side = (0..n).max_by(widest)?;
-                stack.extend(part[side].halves().map(|half| {
-                    let mut piece = part.clone();
-                    piece[side] = half;
-                    piece
-                }));
+                stack.extend(halved(&part, side));
             }
         }
     }
