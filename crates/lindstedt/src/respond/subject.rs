@@ -179,7 +179,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The value of the unit of frequency.
-    fn unit(&self) -> Option<Ball> {
+    pub(super) fn unit(&self) -> Option<Ball> {
         let value = |name: &str| self.oscillator.value(name);
         self.slow.system.unit_value(&value, Balls::new(BITS))
     }

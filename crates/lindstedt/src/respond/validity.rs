@@ -12,6 +12,8 @@ impl Subject<'_> {
     pub(super) fn growth(&self, values: &Values, at: &[f64]) -> f64 {
         let moduli: Vec<f64> = at.chunks_exact(2).map(|w| w[0].hypot(w[1])).collect();
         let mut sizes = order_sizes(&self.slow, &doubles(values), &moduli, self.order);
+        // Those of free motion are in the time of the unit of frequency.
+        sizes[0] *= self.unit().map_or(1.0, |unit| unit.midpoint().to_f64());
         sizes.retain(|size| *size > 0.0);
         sizes.windows(2).map(|pair| pair[1] / pair[0]).fold(0.0, f64::max)
     }
