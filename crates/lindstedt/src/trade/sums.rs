@@ -7,7 +7,7 @@ use crate::{Error, EvaluationError};
 use lindstedt_algebra::Stop;
 use lindstedt_number::ball::Balls;
 use lindstedt_series::resummation::{
-    Estimate, Method, ResummationError, Sample, Singularity, partial_sums, resum_until,
+    Estimate, Method, ResummationError, Sample, Singularity, partial_sums, resum,
 };
 use rug::Float;
 use rug::float::Special;
@@ -64,7 +64,7 @@ impl Series {
     }
 
     fn resummed(&self, source: &Source, stop: &Stop) -> Result<Found, Error> {
-        let found = resum_until(&|bits| self.sample(source, bits), None, self.accuracy, stop);
+        let found = resum(&|bits| self.sample(source, bits), None, self.accuracy, stop);
         let found = found.map_err(failed)?;
         let estimate = &found.outcome.estimate;
         if found.method == Method::PartialSum || !estimate.error.is_finite() {
@@ -74,7 +74,7 @@ impl Series {
         let sample = self.sample(source, found.bits).ok_or_else(none)?;
         let singularity = found.singularity.as_ref();
         let start = Instant::now();
-        sample.sum(found.method, singularity, self.accuracy).map_err(failed)?;
+        sample.sum(found.method, singularity, self.accuracy, &Stop::default()).map_err(failed)?;
         let again = start.elapsed().as_secs_f64();
         let found = self.found(source, &sample, (found.method, singularity), estimate)?;
         Ok(Found { again, ..found })
@@ -87,7 +87,7 @@ impl Series {
         method: Method,
         singularity: Option<&Singularity>,
     ) -> Result<Estimate, ResummationError> {
-        match sample.sum(method, singularity, self.accuracy) {
+        match sample.sum(method, singularity, self.accuracy, &Stop::default()) {
             Err(reason @ ResummationError::TooFewCoefficients { .. }) => {
                 let sums = partial_sums(&sample.coefficients, &sample.point, sample.bits);
                 let value = sums.last().cloned().ok_or(reason)?;
