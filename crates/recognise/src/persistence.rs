@@ -149,14 +149,15 @@ fn part(problem: &Problem, all: &Monomials, wanted: impl Fn(&Monomial) -> bool) 
     part
 }
 
-/// Whether a term has the unknown as a factor of a first-order term, or not at all.
+/// Whether a term has the unknown as a factor of the perturbation, or not at all. What is of higher order in the small
+/// parameter is refused where the parts are read: Melnikov's integral is the coefficient of the first one.
 fn is_linear(all: &Monomials, m: &Monomial, unknown: &str) -> bool {
     let symbol = Expression::parameter(unknown);
     let inside = |key: &String| all.atoms.get(key).is_some_and(|e| e.contains(&symbol));
     let hidden = m.atoms.keys().any(inside) || m.parameters.keys().any(inside);
     match m.parameters.get(unknown) {
         None => !hidden,
-        Some(1) => !hidden && m.order == 1,
+        Some(1) => !hidden && m.order > 0,
         Some(_) => false,
     }
 }
