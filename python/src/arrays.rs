@@ -1,5 +1,6 @@
 //! What crosses as arrays: functions of many points, charts, surfaces, diagrams.
 
+use crate::found::written;
 use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
@@ -9,7 +10,6 @@ use lindstedt::grid::{Grid, Part};
 use lindstedt::motion::Bifurcation;
 use lindstedt::unstable::impact::map::Verdict;
 use lindstedt::{Answer, Error, Exact, Oscillator, Stability, Standing, Stop, Threshold};
-use lindstedt_report::json;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -33,7 +33,7 @@ pub struct Frequency(pub Answer<FrequencyFunction>, pub Option<f64>);
 impl Frequency {
     /// Header, parameters and methods as JSON.
     fn json(&self) -> PyResult<String> {
-        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+        written(&self.0)
     }
 
     /// The amplitude that the case has.
@@ -63,7 +63,7 @@ pub struct Motions(pub Answer<SolutionFunction>, pub Option<f64>);
 impl Motions {
     /// Header, parameters and methods as JSON.
     fn json(&self) -> PyResult<String> {
-        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+        written(&self.0)
     }
 
     /// The amplitude that the case has.
@@ -102,7 +102,7 @@ pub struct Motion(pub Answer<PeriodicSolution>);
 impl Motion {
     /// Header, frequency and harmonics as JSON.
     fn json(&self) -> PyResult<String> {
-        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+        written(&self.0)
     }
 
     /// x at times.
@@ -140,7 +140,7 @@ const NOTHING: [f64; 6] =
 impl Averaged {
     /// Header, start and rates as JSON.
     fn json(&self) -> PyResult<String> {
-        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+        written(&self.0)
     }
 
     /// Row by row the values and errors of a, psi, x; the times in increasing order. What is not reached is no number.

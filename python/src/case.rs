@@ -2,14 +2,13 @@
 
 use crate::arrays::{self, Averaged, Frequency, Motion, Motions};
 use crate::failure::exception;
-use crate::found::Found;
+use crate::found::{Found, written};
 use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
 use lindstedt::catalogue::Catalogue;
 use lindstedt::{Condition, Error, Oscillator};
-use lindstedt_report::{Format, Present, json};
-use pyo3::exceptions::PyValueError;
+use lindstedt_report::{Format, Present};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 
@@ -20,7 +19,7 @@ pub struct Case(Oscillator);
 /// The built-in problems as JSON.
 #[pyfunction]
 pub fn problems() -> PyResult<String> {
-    json(&Catalogue::builtin()).map_err(|error| PyValueError::new_err(error.to_string()))
+    written(&Catalogue::builtin())
 }
 
 fn made(
@@ -113,7 +112,7 @@ impl Case {
 
     /// What the equation is made of and which methods take it, as JSON.
     fn entry(&self) -> PyResult<String> {
-        json(&self.0.entry()).map_err(|error| PyValueError::new_err(error.to_string()))
+        written(&self.0.entry())
     }
 
     /// The same as a page.

@@ -6,6 +6,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::Serialize;
 
+/// As JSON.
+pub fn written<T: Serialize>(value: &T) -> PyResult<String> {
+    json(value).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
 /// What can be read off an answer.
 pub trait Shown: Send + Sync {
     /// As JSON.

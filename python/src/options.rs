@@ -2,7 +2,7 @@
 
 use crate::failure::usage;
 use lindstedt::grid::Axis;
-use lindstedt::{Error, Exact, Oscillator};
+use lindstedt::{Error, Exact};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::str::FromStr;
@@ -87,14 +87,12 @@ impl Options {
     }
 
     /// The axes of a sweep, separated by semicolons: none, one or two.
-    pub fn axes(&self, oscillator: &Oscillator) -> Result<Vec<Axis>, Error> {
-        let Some(text) = self.text("sweep") else { return Ok(Vec::new()) };
-        let axes: Vec<Axis> =
-            text.split(';').map(|axis| oscillator.axis(axis)).collect::<Result<_, _>>()?;
-        if axes.len() > 2 {
-            return Err(usage("at most two parameters are swept", "one axis or two"));
-        }
-        Ok(axes)
+    pub fn axes(
+        &self,
+        read: impl Fn(&str) -> Result<Axis, Error>,
+    ) -> Result<(Option<Axis>, Option<Axis>), Error> {
+        let text = self.text("sweep").unwrap_or_default();
+        Axis::pair(text.split(';').filter(|axis| !axis.is_empty()).map(read))
     }
 
     /// Refuses what no question read.

@@ -138,11 +138,10 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     }
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
-        let mut axes = options.axes(case)?.into_iter();
-        if let Some(columns) = axes.next() {
+        if let (Some(columns), rows) = options.axes(|axis| case.axis(axis))? {
             let question = averaged(options)?;
             options.finish()?;
-            return boxed(case.averaged_sweep(&question, columns, axes.next(), work));
+            return boxed(case.averaged_sweep(&question, columns, rows, work));
         }
         let times = options.read("times", Times::parse)?;
         let question = AveragedMotion { times, ..averaged(options)? };
@@ -150,11 +149,10 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         return boxed(case.averaged_motion(&question, work));
     }
     // What is not read before `finish` is refused: a sweep has no times, phase and code, a proof no code.
-    let mut axes = options.axes(case)?.into_iter();
-    if let Some(columns) = axes.next() {
+    if let (Some(columns), rows) = options.axes(|axis| case.axis(axis))? {
         let question = resummed(options)?;
         options.finish()?;
-        return match (prove, axes.next()) {
+        return match (prove, rows) {
             (false, rows) => boxed(case.evaluate_sweep(&question, columns, rows, work)),
             (true, None) => boxed(case.prove_sweep(&question, columns, work)),
             (true, Some(_)) => Err(usage("a proved family is over one parameter", "one axis")),
@@ -185,18 +183,11 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
 }
 
 fn respond(case: &Oscillator, options: &Options) -> Result<Respond, Error> {
-    let sweeps = options.text("sweep").unwrap_or_default();
-    let sweeps = sweeps.split(';').filter(|text| !text.is_empty());
-    let axes: Vec<Axis> =
-        sweeps.map(|text| Respond::read_sweep(case, text)).collect::<Result<_, _>>()?;
-    if axes.len() > 2 {
-        return Err(usage("at most two parameters vary", "one axis or two"));
-    }
-    let mut axes = axes.into_iter();
+    let (sweep, second) = options.axes(|axis| Respond::read_sweep(case, axis))?;
     let question = Respond {
         order: options.parsed("order")?,
-        sweep: axes.next(),
-        second: axes.next(),
+        sweep,
+        second,
         amplitude: options.exact("box")?,
         follow: options.flag("follow")?,
         start: options.read("start", Respond::read_start)?,
@@ -306,10 +297,15 @@ fn simulate(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     boxed(case.motion(&question, work))
 }
 
+fn swept(case: &Oscillator, options: &Options) -> Result<Vec<Axis>, Error> {
+    let (columns, rows) = options.axes(|axis| case.axis(axis))?;
+    Ok(columns.into_iter().chain(rows).collect())
+}
+
 /// The question for a threshold.
 pub fn threshold(case: &Oscillator, options: &Options) -> Result<Threshold, Error> {
     let question = Threshold {
-        sweep: options.axes(case)?,
+        sweep: swept(case, options)?,
         zeros: options.read("zeros", Axis::ends)?,
         subharmonics: options.parsed("subharmonics")?,
         second_order: options.flag("second_order")?,
@@ -345,7 +341,7 @@ pub fn stability(case: &Oscillator, options: &Options) -> Result<Stability, Erro
         predict,
         exact,
         branch: branch(options)?,
-        sweep: options.axes(case)?,
+        sweep: swept(case, options)?,
         ..Stability::default()
     };
     options.finish()?;

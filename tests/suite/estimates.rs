@@ -192,7 +192,7 @@ fn van_der_pol(seed: u64, order: usize, cases: usize, count: &mut Count) {
             })
         };
         for method in [None, g.method(), g.method()] {
-            let found = resum(&source, method, 100);
+            let found = resum(&source, method, 100, &Default::default());
             let label = format!("van-der-pol {eps} {known} terms {method:?}");
             count.add(
                 label,

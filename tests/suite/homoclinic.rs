@@ -60,3 +60,18 @@ fn what_is_refused() {
         assert!(said.contains(reason), "{equation}: {said}");
     }
 }
+
+/// With a force without such a series, to first order: the parameter is a factor of the perturbation, of its first order.
+#[test]
+fn a_parameter_elsewhere_is_refused_for_its_place() {
+    for (factor, reason) in [
+        ("eps^2*mu", "of higher order in the small parameter"),
+        ("mu", "has no factor of the small parameter"),
+        ("eps*mu^2", "not linear in the parameter"),
+        ("eps*cos(mu)", "not linear in the parameter"),
+    ] {
+        let pendulum = Oscillator::parse(&format!("x'' + sin(x) = eps - {factor}*x'")).unwrap();
+        let said = pendulum.persistence("mu", &Work::default()).unwrap_err().to_string();
+        assert!(said.contains(reason), "{factor}: {said}");
+    }
+}

@@ -6,7 +6,7 @@ use lindstedt::unstable::algebra::Stop;
 use lindstedt::unstable::derivation::averaging::{Averaging, AveragingSettings, average};
 use lindstedt::unstable::derivation::numeric::{Tier, derive as derive_numbers};
 use lindstedt::unstable::series::resummation::{
-    Method, ResummationError, Sample, UniformMap, resum_until,
+    Method, ResummationError, Sample, UniformMap, resum,
 };
 use lindstedt::{
     Derivation, DerivationError as Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal,
@@ -239,19 +239,19 @@ fn resummations() {
     };
     for method in std::iter::once(None).chain(Method::ALL.map(Some)) {
         let (stop, asked) = after(u64::MAX);
-        let whole = resum_until(&source, method, 200, &stop).unwrap();
+        let whole = resum(&source, method, 200, &stop).unwrap();
         let total = asked.load(Ordering::SeqCst);
         // The search for the singularity alone has eight eliminations of up to 17 rows.
         assert!(total > 500, "{method:?}: {total} questions");
         let step = total / 40;
         for limit in (0..40).map(|i| i * step).chain([1, 2, total - 2, total - 1]) {
             let (stop, asked) = after(limit);
-            let broken = resum_until(&source, method, 200, &stop);
+            let broken = resum(&source, method, 200, &stop);
             assert!(matches!(broken, Err(ResummationError::Stopped)), "{method:?} {limit}");
             assert_eq!(asked.load(Ordering::SeqCst), limit + 1, "{method:?}");
         }
         let (stop, _) = after(total);
-        let again = resum_until(&source, method, 200, &stop).unwrap();
+        let again = resum(&source, method, 200, &stop).unwrap();
         assert_eq!(again.outcome.estimate.value, whole.outcome.estimate.value);
     }
 }

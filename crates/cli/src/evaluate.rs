@@ -35,8 +35,8 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     if options.prove && options.sweep.is_empty() {
         return session.show(oscillator.prove(&question, &work), &options.plot);
     }
-    if !options.sweep.is_empty() {
-        let (columns, rows) = axes(&options.sweep)?;
+    let axes = options.sweep.iter().map(|text| Axis::parse(text));
+    if let (Some(columns), rows) = Axis::pair(axes)? {
         if options.prove {
             if rows.is_some() {
                 let message = "a proved family is over one parameter".to_owned();
@@ -57,15 +57,6 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         return session.show(code, &[]);
     }
     session.show(oscillator.evaluate(&question, &work), &options.plot)
-}
-
-/// One axis or two.
-fn axes(texts: &[String]) -> Result<(Axis, Option<Axis>), Failure> {
-    let mut axes = texts.iter().map(|text| Axis::parse(text));
-    let (columns, rows) = (axes.next().transpose()?, axes.next().transpose()?);
-    let both = columns.filter(|_| axes.next().is_none()).map(|columns| (columns, rows));
-    let message = "at most two parameters are swept".to_owned();
-    both.ok_or_else(|| Failure::usage("sweep", message, "one --sweep or two"))
 }
 
 fn averaged(
@@ -91,8 +82,8 @@ fn averaged(
     let start = start.map_err(Error::from)?;
     let order = options.order.map(|order| order as usize);
     let question = AveragedMotion { order, start, times };
-    if !options.sweep.is_empty() {
-        let (columns, rows) = axes(&options.sweep)?;
+    let axes = options.sweep.iter().map(|text| Axis::parse(text));
+    if let (Some(columns), rows) = Axis::pair(axes)? {
         return session
             .show(oscillator.averaged_sweep(&question, columns, rows, work), &options.plot);
     }

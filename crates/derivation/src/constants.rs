@@ -48,7 +48,7 @@ impl Constants {
             Symbol::LogTwo => balls.ln_2(),
             Symbol::Pi => balls.pi(),
             Symbol::Zeta(k) => balls.zeta(u32::from(k))?,
-            Symbol::Sum(n) => sine_sum(n, &amplitude()?, balls),
+            Symbol::Sum(n) => sine_sum(n, &amplitude()?, balls, &Stop::default())?,
             Symbol::Parameter(0) => balls.ln(&amplitude()?)?,
             Symbol::Parameter(_) => return None,
         };
@@ -92,13 +92,8 @@ impl Constants {
 
 /// S_n(a) = sum_k (-1)^k a^(2k) k^n/(2k+1)!, 0^0 = 1: S_0 = sin(a)/a. The terms are summed until
 /// they decrease by more than a half each; then the rest is below the last term.
-pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls) -> Ball {
-    let sum = sine_sum_until(n, amplitude, balls, &Stop::default());
-    sum.unwrap_or_else(|| balls.indeterminate())
-}
-
-/// [`sine_sum`]; nothing when stopped, which is asked once per term.
-pub fn sine_sum_until(n: u16, amplitude: &Ball, balls: Balls, stop: &Stop) -> Option<Ball> {
+/// Nothing once `stop` said so, which is asked for every term.
+pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls, stop: &Stop) -> Option<Ball> {
     let square = balls.square(amplitude);
     let mut weight = balls.one();
     let mut sum = if n == 0 { balls.one() } else { balls.zero() };

@@ -25,17 +25,9 @@ const COTANGENT_SQUARED: Symbol = Symbol::Parameter(u16::MAX - 1);
 const LOG_SECANT: Symbol = Symbol::Parameter(u16::MAX);
 
 /// T sqrt(F_0)/(2 pi) to the given order, for the Taylor coefficients F_0, F_1, ... (at least
-/// `order + 1` of them, F_0 a single term). Nothing when F_0 is not invertible.
+/// `order + 1` of them, F_0 a single term). Nothing when F_0 is not invertible, and once `stop`
+/// said so.
 pub fn period_over_2pi(
-    ring: &PolynomialRing,
-    sums: &[Polynomial],
-    order: usize,
-) -> Option<Vec<Polynomial>> {
-    period_until(ring, sums, order, &Stop::default())
-}
-
-/// The same; nothing when stopped, too.
-pub(crate) fn period_until(
     ring: &PolynomialRing,
     sums: &[Polynomial],
     order: usize,
@@ -121,13 +113,8 @@ fn mean_of_powers(i: u16, m: u16) -> Polynomial {
 ///   omega^p = (1 + delta)^(p/2) M(u)^(-p),  M(u) = sum_m mu_m u^m,  u = delta/(1 + delta).
 ///
 /// p = 2 is omega^2, p = -1 is T/2pi (linear in the mu_m). Cost: about 10^4 products at order
-/// 30, where omega^2 has 28 627 terms.
-pub fn power_law_frequency(ring: &PolynomialRing, power: i32, order: u16) -> Vec<Polynomial> {
-    frequency_until(ring, power, order, &Stop::default()).unwrap_or_default()
-}
-
-/// The same; nothing when stopped.
-pub(crate) fn frequency_until(
+/// 30, where omega^2 has 28 627 terms. Nothing once `stop` said so.
+pub fn power_law_frequency(
     ring: &PolynomialRing,
     power: i32,
     order: u16,

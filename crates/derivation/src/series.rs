@@ -1,7 +1,7 @@
 //! The series of a result: powers of the frequency, in closed form, scaled to the amplitude.
 
 use crate::binding::FORMAL;
-use crate::energy::{frequency_until, period_until};
+use crate::energy::{period_over_2pi, power_law_frequency};
 use crate::error::DerivationError as Error;
 use crate::limits::has_logarithms;
 use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, Stop};
@@ -199,12 +199,12 @@ pub(crate) fn energy_integral(
     let size = u16::try_from(order).map_err(|_| unavailable())?;
     match problem.amplitude {
         AmplitudeRole::ScalesFrequency { exponent: 2 } => {
-            let power = |p| frequency_until(ring, p, size, stop).ok_or_else(interrupted);
+            let power = |p| power_law_frequency(ring, p, size, stop).ok_or_else(interrupted);
             Ok((Powers::new(power(2)?, power(1)?, power(-1)?, false), ring.one()))
         }
         AmplitudeRole::InSums => {
             let sums: Vec<Polynomial> = (0..=size).map(|n| ring.symbol(Symbol::Sum(n))).collect();
-            let inverse = period_until(ring, &sums, order, stop).ok_or_else(interrupted)?;
+            let inverse = period_over_2pi(ring, &sums, order, stop).ok_or_else(interrupted)?;
             let period = Series::truncated(inverse);
             let power = |p: i32| {
                 let power = period.power_while(ring, &Rational::from(p), &|| !stop.asked());

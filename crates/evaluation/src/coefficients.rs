@@ -5,7 +5,7 @@
 //! forces x F(delta ln x^2).
 
 use lindstedt_algebra::Stop;
-use lindstedt_derivation::constants::sine_sum_until;
+use lindstedt_derivation::constants::sine_sum;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::lobachevsky_function::means_until;
 use rug::{Float, Integer, Rational};
@@ -61,7 +61,7 @@ pub fn pendulum(
         let at = amplitude(balls);
         let orders = 0..=u16::try_from(order).ok()?;
         let list: Vec<Ball> =
-            orders.map(|n| sine_sum_until(n, &at, balls, stop)).collect::<Option<_>>()?;
+            orders.map(|n| sine_sum(n, &at, balls, stop)).collect::<Option<_>>()?;
         if list.iter().all(|s| s.relative_accuracy_bits() >= i64::from(work)) {
             break list;
         }

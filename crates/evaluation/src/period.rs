@@ -8,6 +8,7 @@ use crate::few;
 use crate::names::short;
 use crate::setting::{Form, Setting};
 use crate::source::{self, Source, remembered};
+use lindstedt_algebra::Stop;
 use lindstedt_derivation::{DerivationError, Progress, Work};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
@@ -243,7 +244,8 @@ fn best_truncation(
     scale: &Ball,
     digits: usize,
 ) -> Option<(usize, Option<Number>)> {
-    let outcome = sample(resummed.bits)?.sum(Method::PartialSum, None, 64).ok()?;
+    let outcome =
+        sample(resummed.bits)?.sum(Method::PartialSum, None, 64, &Stop::default()).ok()?;
     let order = outcome.smallest_term?;
     let balls = Balls::new(resummed.bits);
     let ball = balls.from_parts(&outcome.estimate.value, &outcome.estimate.error);

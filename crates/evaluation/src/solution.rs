@@ -85,10 +85,11 @@ fn settled(
     method: Method,
     known: usize,
     accuracy: u32,
+    stop: &Stop,
 ) -> Option<(Estimate, u32)> {
     let loss = u32::try_from(known).ok()?.saturating_mul(4);
     let mut bits = accuracy.saturating_add(64).saturating_add(loss);
-    let sum = |bits: u32| Some(sample(bits)?.sum(method, None, accuracy).ok()?.estimate);
+    let sum = |bits: u32| Some(sample(bits)?.sum(method, None, accuracy, stop).ok()?.estimate);
     let mut before = sum(bits)?;
     for last in (0..=DOUBLINGS).rev() {
         bits = bits.saturating_mul(2);
@@ -265,7 +266,8 @@ impl Trajectory {
         let order = u32::try_from(self.order()).ok()?;
         let bits = 128 + 4 * order;
         let sample = self.sample(point, bits)?;
-        let sum = sample.sum(Method::Pade, None, 53).map(|found| found.estimate.value).ok();
+        let sum =
+            sample.sum(Method::Pade, None, 53, &self.stop).map(|found| found.estimate.value).ok();
         let partial = || partial_sums(&sample.coefficients, &sample.point, bits).pop();
         let value = sum.or_else(partial)?;
         let balls = Balls::new(bits);
@@ -302,7 +304,7 @@ impl Trajectory {
             Some(few) => few.ok().map(|found| (found.outcome.estimate, found.bits))?,
             None => {
                 let sums = self.methods.iter();
-                let sums = sums.filter_map(|m| settled(&source, *m, known, accuracy));
+                let sums = sums.filter_map(|m| settled(&source, *m, known, accuracy, &self.stop));
                 sums.min_by(|a, b| a.0.error.total_cmp(&b.0.error))?
             }
         };

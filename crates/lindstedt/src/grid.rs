@@ -35,6 +35,20 @@ pub struct Axis {
 pub type Part = (usize, usize);
 
 impl Axis {
+    /// The first axis of a sweep, and the second.
+    ///
+    /// # Errors
+    /// That of an axis; [`Refused`] for a third one.
+    pub fn pair(
+        axes: impl IntoIterator<Item = Result<Self, Error>>,
+    ) -> Result<(Option<Self>, Option<Self>), Error> {
+        let mut axes = axes.into_iter();
+        let pair = (axes.next().transpose()?, axes.next().transpose()?);
+        let message = "at most two parameters are swept";
+        let refused = || Refused::usage("sweep", message, "one --sweep or two").into();
+        axes.next().map_or(Ok(pair), |_| Err(refused()))
+    }
+
     /// The values of a part.
     pub(crate) fn part(&self, part: Option<Part>) -> Self {
         let (first, count) = part.unwrap_or((0, self.values.len()));

@@ -8,7 +8,7 @@ use super::power_law::vocabulary;
 use super::{Findings, Reader, Row, Section, periods, plain, show};
 use lindstedt::Error;
 use lindstedt::unstable::derivation::constants::sine_sum;
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::{Ball, Balls};
@@ -173,7 +173,7 @@ impl PrintedSum {
         }
         sum /= *order;
         let sum = balls.from_rational(&sum);
-        let series = sine_sum(*order, &balls.one(), balls);
+        let series = sine_sum(*order, &balls.one(), balls, &Stop::default())?;
         let ours = balls.neg(&balls.div_i64(&series, (*order).into())?);
         Some(plain(
             self.label,
@@ -217,7 +217,7 @@ fn omega_row(balls: Balls) -> Option<Row> {
     let log = balls.mul_i64(&balls.ln(&x)?, 2);
     let slope = periods::difference(1, balls, |d| force(&x, d, balls))?;
     let measured = balls.div(&slope, &balls.mul(&x, &log))?;
-    let printed = balls.neg(&sine_sum(1, &balls.one(), balls));
+    let printed = balls.neg(&sine_sum(1, &balls.one(), balls, &Stop::default())?);
     let near = balls.add(&measured, &printed).abs_upper() < 1e-25;
     let correction = (!holds && near).then(|| corrections.join(", "));
     let findings = Findings { holds, correction, propagates, reproduced: None };

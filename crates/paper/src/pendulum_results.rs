@@ -6,7 +6,7 @@ use super::pendulum_numbers::fifty_one;
 use super::tables::{QUANTITIES, Truncations};
 use super::{Row, periods, show};
 use lindstedt::unstable::derivation::energy;
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::Balls;
@@ -44,7 +44,7 @@ pub(super) fn rows(case: &Case, balls: Balls) -> Option<[Row; 2]> {
     // The second route: the period of the energy integral, t_1 = -alpha_1/2.
     let engine = &case.derivation.ring;
     let sums = [0, 1].map(|n| engine.symbol(Symbol::Sum(n)));
-    let period = energy::period_over_2pi(engine, &sums, 1)?;
+    let period = energy::period_over_2pi(engine, &sums, 1, &Stop::default())?;
     let first = in_printed_symbols(period.get(1)?)?;
     Some([correction_row(case, &first, balls)?, period_row(&first, balls)?])
 }

@@ -4,7 +4,7 @@ use super::compare::{Term, compare_sums, word};
 use super::orders::Case;
 use super::{Reader, Row, Section, lobachevsky, periods, plain, show};
 use lindstedt::{Error, Quantity, unstable::derivation::energy};
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::{Ball, Balls};
@@ -102,7 +102,7 @@ fn power_row() -> Row {
 fn phase_row(case: &Case) -> Option<Row> {
     let (ring, order) = (&case.derivation.ring, case.expansion.order());
     let ones = vec![ring.one(); order + 1];
-    let period = Series::truncated(energy::period_over_2pi(ring, &ones, order)?);
+    let period = Series::truncated(energy::period_over_2pi(ring, &ones, order, &Stop::default())?);
     let squared = Series::truncated(case.expansion.frequency_squared.clone());
     let frequency = squared.power(ring, &Rational::from((1, 2)))?;
     let product = period.mul(ring, &frequency, order).coefficients;
@@ -122,8 +122,9 @@ fn phase_row(case: &Case) -> Option<Row> {
 fn frequency_row(case: &Case) -> Option<Row> {
     let order = case.expansion.order();
     let exact = |n| case.derivation.exact(Quantity::FrequencySquared, n).unwrap_or_default();
+    let size = u16::try_from(order).ok()?;
     let second_route =
-        energy::power_law_frequency(&case.derivation.ring, 2, u16::try_from(order).ok()?);
+        energy::power_law_frequency(&case.derivation.ring, 2, size, &Stop::default())?;
     Some(plain(
         "(34)",
         "$omega^2 = 1 + alpha_1 delta + alpha_2 delta^2 + ...$",

@@ -4,7 +4,7 @@ use super::{Reader, Section, Table, periods};
 use crate::text::texts;
 use lindstedt::unstable::derivation::constants::Constants;
 use lindstedt::{Error, Exact, unstable::derivation::energy};
-use lindstedt_algebra::Ring;
+use lindstedt_algebra::{Ring, Stop};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::digits::decimal;
@@ -45,7 +45,8 @@ impl Truncations {
     /// x'' + x (x^2)^delta = 0, amplitude 1.
     pub fn power_law(order: usize, balls: Balls) -> Option<Self> {
         let ring = PolynomialRing::default();
-        let exact = energy::power_law_frequency(&ring, -1, u16::try_from(order).ok()?);
+        let exact =
+            energy::power_law_frequency(&ring, -1, u16::try_from(order).ok()?, &Stop::default())?;
         Self::new(&ring.one(), &exact, &Constants::default(), balls)
     }
 
@@ -55,7 +56,7 @@ impl Truncations {
         let sum = |n| Some(ring.symbol(Symbol::Sum(u16::try_from(n).ok()?)));
         let sums = (0..=order).map(sum).collect::<Option<Vec<_>>>()?;
         let constants = Constants::new(Some(Exact::Rational(Rational::from(1))));
-        let exact = energy::period_over_2pi(&ring, &sums, order)?;
+        let exact = energy::period_over_2pi(&ring, &sums, order, &Stop::default())?;
         Self::new(sums.first()?, &exact, &constants, balls)
     }
 

@@ -61,10 +61,11 @@ impl PersistenceProblem {
         missing(&rest.parameters(), &values)?;
         values.remove(unknown);
         let all = multiply_out(&bind(&rest, &values))?;
-        let bad = all.terms.iter().find(|(m, _)| !is_linear(&all, m, unknown));
-        if let Some((m, q)) = bad {
-            let term = Box::new(all.tree(m, q));
-            return Err(Refusal::Term { term, why: Why::NotLinearUnknown });
+        for (m, q) in &all.terms {
+            place(&all, m, unknown).map_err(|why| {
+                let term = Box::new(all.tree(m, q));
+                Refusal::Term { term, why }
+            })?;
         }
         values.insert(unknown.to_owned(), Exact::from(1));
         let read = |sought: bool, closed: bool| {
@@ -149,14 +150,16 @@ fn part(problem: &Problem, all: &Monomials, wanted: impl Fn(&Monomial) -> bool) 
     part
 }
 
-/// Whether a term has the unknown as a factor of a first-order term, or not at all.
-fn is_linear(all: &Monomials, m: &Monomial, unknown: &str) -> bool {
+/// The unknown is a factor of terms of the perturbation, and stands nowhere else. What is of higher order in the small
+/// parameter is refused where the parts are read: Melnikov's integral is the coefficient of the first one.
+fn place(all: &Monomials, m: &Monomial, unknown: &str) -> Result<(), Why> {
     let symbol = Expression::parameter(unknown);
     let inside = |key: &String| all.atoms.get(key).is_some_and(|e| e.contains(&symbol));
     let hidden = m.atoms.keys().any(inside) || m.parameters.keys().any(inside);
     match m.parameters.get(unknown) {
-        None => !hidden,
-        Some(1) => !hidden && m.order == 1,
-        Some(_) => false,
+        None | Some(1) if hidden => Err(Why::NotLinearUnknown),
+        Some(1) if m.order == 0 => Err(Why::NotSmall),
+        None | Some(1) => Ok(()),
+        Some(_) => Err(Why::NotLinearUnknown),
     }
 }

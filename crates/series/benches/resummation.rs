@@ -25,15 +25,17 @@ fn sample(order: u32, bits: u32) -> Sample {
 fn diagonal_pade(bencher: Bencher<'_, '_>, order: u32) {
     let half = order as usize / 2;
     let c = sample(order, 300).coefficients;
-    bencher.bench(|| Pade::new(&c, half, half, 300));
+    bencher.bench(|| Pade::new(&c, half, half, 300, &Default::default()));
 }
 
 #[divan::bench(args = [10, 20, 40], sample_count = 5)]
 fn sum_by_pade(bencher: Bencher<'_, '_>, order: u32) {
-    bencher.bench(|| resum(&|bits| Some(sample(order, bits)), Some(Method::Pade), 100));
+    bencher.bench(|| {
+        resum(&|bits| Some(sample(order, bits)), Some(Method::Pade), 100, &Default::default())
+    });
 }
 
 #[divan::bench(args = [10, 20, 40], sample_count = 3, sample_size = 1)]
 fn sum_by_the_best_method(bencher: Bencher<'_, '_>, order: u32) {
-    bencher.bench(|| resum(&|bits| Some(sample(order, bits)), None, 100));
+    bencher.bench(|| resum(&|bits| Some(sample(order, bits)), None, 100, &Default::default()));
 }

@@ -21,7 +21,7 @@ use lindstedt_equation::{Expression, Impact, Problem};
 /// let x = Expression::DISPLACEMENT;
 /// let oscillator = Model::second_order(&(Expression::ACCELERATION + x))?;
 /// let system = oscillator.compile(Doubles, &Parameters::new())?;
-/// assert_eq!(system.dimension(), 2);
+/// assert_eq!((system.directions(), system.switches()), (0, 0));
 /// # Ok::<(), lindstedt_simulate::SimulateError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -250,13 +250,7 @@ impl<R: Real> System<R> {
         &self.real
     }
 
-    /// The number of states, without the linearisation.
-    #[must_use]
-    pub fn dimension(&self) -> usize {
-        self.variables
-    }
-
-    /// The number of directions of the linearisation: 0 or `dimension()`.
+    /// The number of directions of the linearisation: 0 or that of the states.
     #[must_use]
     pub fn directions(&self) -> usize {
         self.tape.states / self.variables - 1

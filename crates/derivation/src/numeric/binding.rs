@@ -56,7 +56,8 @@ impl<R: Reals> Binding<R> for Given<'_, R> {
         // S_n with small n cancels: the Taylor series of sin at the amplitude.
         let balls = Balls::new(self.reals.bits() + 64);
         let amplitude = self.ball("amplitude", 64)?;
-        Some(real(self.reals, &sine_sum(u16::try_from(n).ok()?, &amplitude, balls)))
+        let sum = sine_sum(u16::try_from(n).ok()?, &amplitude, balls, &self.settings.stop)?;
+        Some(real(self.reals, &sum))
     }
 }
 

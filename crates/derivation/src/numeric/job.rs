@@ -50,7 +50,7 @@ impl Job<'_> {
             Tier::Doubles => {
                 let run = |job: &mut Job<'_>, (accuracy, end)| {
                     let (grid, stop) = (Grid::new(accuracy, end), job.settings.stop.clone());
-                    let algebra = Collocation::until(Doubles, grid, stop);
+                    let algebra = Collocation::new(Doubles, grid, stop);
                     job.run(&algebra, algebra.nodes())
                 };
                 // A solution is known to about 1e-16: where cos psi is smaller than that, x_n/x_0 is
@@ -90,7 +90,7 @@ impl Job<'_> {
             bits = needed;
             limit_memory(self.settings, grid.nodes, bits)?;
             let stop = self.settings.stop.clone();
-            let algebra = Collocation::until(Floats::new(bits), grid, stop);
+            let algebra = Collocation::new(Floats::new(bits), grid, stop);
             let run = self.run(&algebra, grid.nodes)?;
             let Some(before) = coarse.replace(run) else {
                 guard = 6;

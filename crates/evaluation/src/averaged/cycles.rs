@@ -13,7 +13,7 @@ use lindstedt_algebra::Stop;
 use lindstedt_derivation::averaging::{Algebraic, Cycle, Cycles};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number};
-use lindstedt_series::resummation::{Sample, partial_sums, resum_until};
+use lindstedt_series::resummation::{Sample, partial_sums, resum};
 use rug::Float;
 use rug::ops::Pow;
 use serde::Serialize;
@@ -83,7 +83,7 @@ impl<'a> Along<'a> {
     /// The sum, with an error that is infinite where the terms do not fall.
     fn sum(&self, q: f64, bits: u32, stop: &Stop) -> Option<Ball> {
         let sample = remembered(|bits| Some(self.sample(bits)));
-        let resummed = resum_until(&sample, None, bits, stop).ok().map(|r| r.outcome.estimate);
+        let resummed = resum(&sample, None, bits, stop).ok().map(|r| r.outcome.estimate);
         let (value, error) = match resummed.filter(|found| found.error.is_finite()) {
             Some(found) => (found.value, found.error),
             None => {

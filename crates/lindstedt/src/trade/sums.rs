@@ -7,7 +7,7 @@ use crate::{Error, EvaluationError};
 use lindstedt_algebra::Stop;
 use lindstedt_number::ball::Balls;
 use lindstedt_series::resummation::{
-    Estimate, Method, ResummationError, Sample, Singularity, partial_sums, resum_until,
+    Estimate, Method, ResummationError, Sample, Singularity, partial_sums, resum,
 };
 use rug::Float;
 use rug::float::Special;
@@ -50,21 +50,21 @@ impl Series {
                 ..found
             })
         };
-        let mut list = vec![timed(&|| self.partial_sum(source))?];
+        let mut list = vec![timed(&|| self.partial_sum(source, stop))?];
         list.extend(timed(&|| self.resummed(source, stop)).ok());
         Ok(list)
     }
 
-    fn partial_sum(&self, source: &Source) -> Result<Found, Error> {
+    fn partial_sum(&self, source: &Source, stop: &Stop) -> Result<Found, Error> {
         let bits = self.accuracy + 64;
         let none = || failed(ResummationError::NoCoefficients { bits });
         let sample = self.sample(source, bits).ok_or_else(none)?;
-        let estimate = self.sum(&sample, Method::PartialSum, None).map_err(failed)?;
-        self.found(source, &sample, (Method::PartialSum, None), &estimate)
+        let estimate = self.sum(&sample, Method::PartialSum, None, stop).map_err(failed)?;
+        self.found(source, &sample, (Method::PartialSum, None), &estimate, stop)
     }
 
     fn resummed(&self, source: &Source, stop: &Stop) -> Result<Found, Error> {
-        let found = resum_until(&|bits| self.sample(source, bits), None, self.accuracy, stop);
+        let found = resum(&|bits| self.sample(source, bits), None, self.accuracy, stop);
         let found = found.map_err(failed)?;
         let estimate = &found.outcome.estimate;
         if found.method == Method::PartialSum || !estimate.error.is_finite() {
@@ -74,9 +74,9 @@ impl Series {
         let sample = self.sample(source, found.bits).ok_or_else(none)?;
         let singularity = found.singularity.as_ref();
         let start = Instant::now();
-        sample.sum(found.method, singularity, self.accuracy).map_err(failed)?;
+        sample.sum(found.method, singularity, self.accuracy, stop).map_err(failed)?;
         let again = start.elapsed().as_secs_f64();
-        let found = self.found(source, &sample, (found.method, singularity), estimate)?;
+        let found = self.found(source, &sample, (found.method, singularity), estimate, stop)?;
         Ok(Found { again, ..found })
     }
 
@@ -86,8 +86,9 @@ impl Series {
         sample: &Sample,
         method: Method,
         singularity: Option<&Singularity>,
+        stop: &Stop,
     ) -> Result<Estimate, ResummationError> {
-        match sample.sum(method, singularity, self.accuracy) {
+        match sample.sum(method, singularity, self.accuracy, stop) {
             Err(reason @ ResummationError::TooFewCoefficients { .. }) => {
                 let sums = partial_sums(&sample.coefficients, &sample.point, sample.bits);
                 let value = sums.last().cloned().ok_or(reason)?;
@@ -105,8 +106,9 @@ impl Series {
         sample: &Sample,
         (method, singularity): (Method, Option<&Singularity>),
         value: &Float,
-    ) -> Float {
-        let Some(errors) = &self.errors else { return Float::new(53) };
+        stop: &Stop,
+    ) -> Result<Float, ResummationError> {
+        let Some(errors) = &self.errors else { return Ok(Float::new(53)) };
         let signs: [fn(usize) -> bool; 3] = [|_| false, |n| n % 2 == 1, |n| n % 4 > 1];
         let mut noise = Float::new(53);
         for negative in signs {
@@ -118,12 +120,13 @@ impl Series {
                     *c += e;
                 }
             }
-            noise += match self.sum(&changed, method, singularity) {
+            noise += match self.sum(&changed, method, singularity, stop) {
                 Ok(other) => Float::with_val(53, &other.value - value).abs(),
+                Err(ResummationError::Stopped) => return Err(ResummationError::Stopped),
                 Err(_) => Float::with_val(53, Special::Infinity),
             };
         }
-        noise
+        Ok(noise)
     }
 
     /// 2 pi times the factor of the source.
@@ -133,8 +136,9 @@ impl Series {
         sample: &Sample,
         by: (Method, Option<&Singularity>),
         estimate: &Estimate,
+        stop: &Stop,
     ) -> Result<Found, Error> {
-        let noise = self.noise(sample, by, &estimate.value);
+        let noise = self.noise(sample, by, &estimate.value, stop).map_err(failed)?;
         let balls = Balls::new(self.accuracy + 64);
         let factor = (source.factor)(balls).ok_or(Error::NoValue)?;
         let scale = balls.mul(&balls.mul_i64(&balls.pi(), 2), &factor);

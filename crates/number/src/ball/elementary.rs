@@ -4,7 +4,7 @@
 //! |f(m + d) - f(m)| that becomes the propagated radius.
 
 use super::{Ball, Balls, down, magnitude, radius_zero, up};
-use rug::{Float, float::Constant};
+use rug::Float;
 
 /// Beyond 2^this a sine is answered by [-1, 1]: reducing the argument modulo pi takes as many
 /// bits of pi as the exponent says, which would be a denial of service at 2^(10^9).
@@ -136,12 +136,6 @@ impl Balls {
     /// [-1, 1].
     fn unit_interval(self) -> Ball {
         self.enclose(0, up(1))
-    }
-
-    /// Euler's constant gamma.
-    #[must_use]
-    pub fn euler_gamma(self) -> Ball {
-        self.enclose(Constant::Euler, radius_zero())
     }
 }
 

@@ -261,7 +261,6 @@ fn constants() {
         (balls.pi(), "3.14159265358979323846"),
         (balls.ln_2(), "0.69314718055994530942"),
         (balls.zeta(3).unwrap(), "1.20205690315959428540"),
-        (balls.euler_gamma(), "0.57721566490153286061"),
     ];
     for (ball, text) in table {
         let digits = Float::with_val(80, Float::parse(text).unwrap());

@@ -5,6 +5,7 @@ use super::super::{Reader, Section};
 use super::Finding;
 use crate::text::texts;
 use lindstedt::Error;
+use lindstedt_algebra::Stop;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::resummation::Map;
 use rug::{Float, Rational};
@@ -77,7 +78,7 @@ fn uniform(series: &Truncations, delta: &Rational, exact: &Ball, balls: Balls) -
         series.coefficients(Quantity::Period).iter().map(Ball::midpoint).cloned().collect();
     let map = Map::Rational { scale: Float::with_val(bits, 1) };
     let half = Float::with_val(bits, 0.5);
-    let terms = map.expand(&coefficients, &half, bits);
+    let terms = map.expand(&coefficients, &half, bits, &Stop::default());
     let u = Float::with_val(bits, delta / Rational::from(delta + 1u32));
     let root = Float::with_val(bits, 1 - &u).sqrt();
     let turn = Float::with_val(bits, rug::float::Constant::Pi) * 2u32;

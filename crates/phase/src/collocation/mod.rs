@@ -71,7 +71,7 @@ impl<E: PartialEq> PartialEq for Sampled<E> {
 /// use lindstedt_phase::collocation::{Collocation, Grid};
 ///
 /// let (grid, _) = Grid::for_digits(14, 4);
-/// let a = Collocation::new(Doubles, grid);
+/// let a = Collocation::new(Doubles, grid, Default::default());
 /// let cubed = a.mul(&a.cosine(), &a.mul(&a.cosine(), &a.cosine()));
 /// // cos^3 = (3 cos + cos 3 psi)/4.
 /// let split = a.resolve(&cubed)?;
@@ -89,13 +89,9 @@ pub struct Collocation<R: Reals> {
 }
 
 impl<R: Reals> Collocation<R> {
-    /// The algebra on a grid. Cost: a Si value per node, about 10 ms at 100 digits.
-    pub fn new(reals: R, grid: Grid) -> Self {
-        Self::until(reals, grid, Stop::default())
-    }
-
-    /// The same, whose tables and expansions end when `stop` says so.
-    pub fn until(reals: R, grid: Grid, stop: Stop) -> Self {
+    /// The algebra on a grid, whose tables and expansions end when `stop` says so. Cost: a Si value per node, about 10 ms at
+    /// 100 digits.
+    pub fn new(reals: R, grid: Grid, stop: Stop) -> Self {
         let (sinc, [cos, sin]) = Sinc::new(&reals, grid, &stop);
         Self {
             reals,

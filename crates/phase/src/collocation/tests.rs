@@ -10,7 +10,7 @@ use lindstedt_number::ball::Balls;
 use rug::{Float, Rational};
 
 fn doubles() -> Collocation<Doubles> {
-    Collocation::new(Doubles, Grid::for_digits(15, 0).0)
+    Collocation::new(Doubles, Grid::for_digits(15, 0).0, Stop::default())
 }
 
 /// The largest difference of values, also of the derivatives where both are known.
@@ -75,7 +75,7 @@ impl Collocation<Doubles> {
 #[test]
 fn first_order_of_the_power_law() {
     let (grid, bits) = Grid::for_digits(60, 1);
-    let a = Collocation::new(Floats::new(bits), grid);
+    let a = Collocation::new(Floats::new(bits), grid, Stop::default());
     // f = -x ln x^2.
     let log = a.log_abs(&a.cosine()).unwrap();
     let f = a.scale(&a.mul(&a.cosine(), &log), &Rational::from(-2));
@@ -104,7 +104,7 @@ fn first_order_of_the_power_law() {
 #[test]
 fn solutions_of_harmonics() {
     check_harmonics(&doubles(), &[0, 2, 3, 4]);
-    check_harmonics(&Collocation::new(Doubles, Grid::new(80.0, 40.0)), &[5, 8]);
+    check_harmonics(&Collocation::new(Doubles, Grid::new(80.0, 40.0), Stop::default()), &[5, 8]);
 }
 
 #[test]

@@ -20,7 +20,6 @@ pub use point::{Point, cosine, log_cosine, sine};
 
 use lindstedt_algebra::Stop;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::{NumberError, digits::certify};
 use point::Reduced;
 
 /// Guard bits on top of log2 of the number of terms: the series lose about 4 ulp per term, the
@@ -206,35 +205,6 @@ impl LambdaTable {
 #[must_use]
 pub fn lambda(m: usize, x: &Point, balls: Balls) -> Ball {
     last(LambdaTable::new(m, balls).values(x), balls)
-}
-
-/// Where the certified functions give up: twice what the digits need and some more.
-fn most_bits(digits: usize) -> u32 {
-    u32::try_from(digits).unwrap_or(u32::MAX).saturating_mul(8).saturating_add(1000)
-}
-
-/// L(x) with `digits` certified significant digits, and a bound of their error.
-///
-/// # Errors
-/// [`NumberError`] if the digits could not be decided.
-pub fn lobachevsky_digits(x: &Point, digits: usize) -> Result<(String, String), NumberError> {
-    certify(digits, most_bits(digits), |balls| Some(lobachevsky(x, balls)))
-}
-
-/// Lambda_m(x) with `digits` certified significant digits, and a bound of their error.
-///
-/// # Errors
-/// [`NumberError`] if the digits could not be decided.
-pub fn lambda_digits(m: usize, x: &Point, digits: usize) -> Result<(String, String), NumberError> {
-    certify(digits, most_bits(digits), |balls| Some(lambda(m, x, balls)))
-}
-
-/// ln|cos x| with `digits` certified significant digits, and a bound of their error.
-///
-/// # Errors
-/// [`NumberError::Undefined`] at the poles; another [`NumberError`] if undecided.
-pub fn log_cosine_digits(x: &Point, digits: usize) -> Result<(String, String), NumberError> {
-    certify(digits, most_bits(digits), |balls| log_cosine(x, balls))
 }
 
 #[cfg(test)]

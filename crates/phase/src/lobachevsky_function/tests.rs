@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 use super::*;
+use lindstedt_number::{NumberError, digits::certify};
 use rug::ops::Pow;
 use rug::{Float, Integer, Rational};
 
@@ -259,15 +260,14 @@ fn exact_values() {
 /// The same table as above through the printing path, and what happens at a pole.
 #[test]
 fn certified_digits() {
-    let (digits, _) = lobachevsky_digits(&times_pi("1/6"), 40).unwrap();
-    assert_eq!(digits, "0.02461714624738248007638063161476222924253");
-    let (digits, _) = lambda_digits(2, &at("1"), 30).unwrap();
-    assert_eq!(digits, "-0.618195934877664648271442988670");
-    let (digits, error) = lambda_digits(2, &times_pi("1/2"), 30).unwrap();
-    assert_eq!((digits.as_str(), error.as_str()), ("0", "0"));
-    assert_eq!(log_cosine_digits(&times_pi("1/2"), 30), Err(NumberError::Undefined));
-    let (digits, _) = log_cosine_digits(&Point::Rational(ten_to(-20)), 5).unwrap();
-    assert_eq!(digits, "-5.0000e-41");
-    let thousand = lobachevsky_digits(&at("1000001/1000000"), 1000).unwrap().0;
-    assert_eq!(thousand.len(), 1002);
+    let of = |digits, f: &dyn Fn(Balls) -> Option<Ball>| certify(digits, 10_000, f);
+    let value = |x: &Point, digits| of(digits, &|balls| Some(lobachevsky(x, balls))).unwrap().0;
+    assert_eq!(value(&times_pi("1/6"), 40), "0.02461714624738248007638063161476222924253");
+    assert_eq!(value(&at("1000001/1000000"), 1000).len(), 1002);
+    let second = |x: &Point| of(30, &|balls| Some(lambda(2, x, balls))).unwrap();
+    assert_eq!(second(&at("1")).0, "-0.618195934877664648271442988670");
+    assert_eq!(second(&times_pi("1/2")), ("0".to_owned(), "0".to_owned()));
+    let log = |x: &Point, digits| of(digits, &|balls| log_cosine(x, balls));
+    assert_eq!(log(&times_pi("1/2"), 30), Err(NumberError::Undefined));
+    assert_eq!(log(&Point::Rational(ten_to(-20)), 5).unwrap().0, "-5.0000e-41");
 }

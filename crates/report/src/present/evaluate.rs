@@ -1,19 +1,13 @@
 //! Numbers from the expansion: the period, the motion, the function.
 
-use super::Present;
+use super::{Present, problem_at, stability_word};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Block, Document, Figure, Formula, Table, Text};
 use lindstedt::evaluate::averaged::{Moment, Motion, Quantity, SummedCycle};
 use lindstedt::evaluate::{
     Displacement, Displacements, Evaluation, ExpansionCode, SolutionCode, method_name,
 };
-use lindstedt::{Answer, Exact, Header, Number};
-
-/// `problem: name = value, ...`.
-fn title(header: &Header) -> String {
-    let values: Vec<String> = header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
-    format!("{}: {}", header.problem, values.join(", "))
-}
+use lindstedt::{Answer, Exact, Number};
 
 /// A value with its error, what is known of that, and what is said where there is no digit.
 fn with_error(number: Option<&Number>, known: &str, unknown: &str, none: &str) -> String {
@@ -37,7 +31,7 @@ impl Present for Answer<Evaluation> {
         lines.extend(tried.map(|(name, found)| (format!("  {name}").into(), found.into())));
         lines.extend(plane(value));
         lines.push(("verdict".into(), value.verdict.as_str().into()));
-        let page = Document::titled(title(&self.header)).lines(lines);
+        let page = Document::titled(problem_at(&self.header)).lines(lines);
         match &value.solution {
             None => page,
             Some(found) => page.words(summed(found)).table(shown(found)),
@@ -167,7 +161,7 @@ impl Present for Answer<Motion> {
             lines.push((name("frequency ", "psi'", "\\psi'", ""), number(frequency)));
         }
         lines.push(("verdict".into(), motion.verdict().into()));
-        let page = cycles(Document::titled(title(&self.header)).lines(lines), motion);
+        let page = cycles(Document::titled(problem_at(&self.header)).lines(lines), motion);
         let psi = Text::from(Formula::new("psi", "\\psi"));
         let table = Table::new(["t".into(), "a".into(), psi, Text::words("x")]);
         page.table(self.moments().iter().map(moment).fold(table, Table::row))
@@ -210,11 +204,7 @@ fn cycles(page: Document, motion: &Motion) -> Document {
         Text::words(with_error(number.as_ref(), "estimated", "no estimate", none))
     };
     let row = |cycle: &SummedCycle| {
-        let stable = match cycle.stable {
-            Some(true) => "stable",
-            Some(false) => "unstable",
-            None => "undecided",
-        };
+        let stable = stability_word(cycle.stable, "undecided");
         let numbers = [&cycle.amplitude, &cycle.frequency, &cycle.floquet_exponent].map(shown);
         numbers.into_iter().chain([Text::words(stable)]).collect::<Vec<_>>()
     };

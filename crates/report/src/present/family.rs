@@ -1,13 +1,13 @@
 //! Proved orbits over a parameter.
 
-use super::{Present, parameter};
+use super::{Present, parameter, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
 use lindstedt::evaluate::{ProvedBranch, ProvedFamily, ProvedMember};
 use lindstedt::{Answer, Number};
 
 fn title(answer: &Answer<ProvedFamily>) -> String {
-    let at = answer.header.at.iter().map(|(name, value)| format!(", {name} = {value}"));
+    let at = values(&answer.header).into_iter().map(|at| format!(", {at}"));
     let at: String = at.collect();
     format!("{}: proved orbits over {}{at}", answer.header.problem, answer.value.parameter)
 }

@@ -1,7 +1,7 @@
 //! Hopf points: the parameter and the frequency in powers of the amplitude, the cycle, what they say.
 
 use super::derive::{coefficient, indexed};
-use super::{Present, both, equation};
+use super::{Present, both, equation, stability_word};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::hopf::{Coefficient, Law};
@@ -129,11 +129,7 @@ fn laws(found: &HopfSeries, page: Document) -> Document {
     };
     let side = if law.above { ">" } else { "<" };
     let kind = if law.supercritical { "Supercritical" } else { "Subcritical" };
-    let verdict = match cycle.is_stable() {
-        Some(true) => "stable",
-        Some(false) => "unstable",
-        None => "of undecided stability",
-    };
+    let verdict = stability_word(cycle.is_stable(), "of undecided stability");
     page.words(format!(
         "{kind}: the cycle lives at {name} {side} {name}_0; {others}: the cycle is {verdict}."
     ))

@@ -30,6 +30,24 @@ use lindstedt::unstable::equation::{Condition, Problem, print};
 use lindstedt::{Header, Number, Status};
 use serde::Serialize;
 
+/// `name = value` of the parameters.
+fn values(header: &Header) -> Vec<String> {
+    header.at.iter().map(|(name, value)| format!("{name} = {value}")).collect()
+}
+
+/// `problem: name = value, ...`.
+fn problem_at(header: &Header) -> String {
+    match &values(header)[..] {
+        [] => header.problem.clone(),
+        values => format!("{}: {}", header.problem, values.join(", ")),
+    }
+}
+
+/// In words, with those where it is not known.
+fn stability_word(stable: Option<bool>, open: &'static str) -> &'static str {
+    stable.map_or(open, |stable| if stable { "stable" } else { "unstable" })
+}
+
 /// An answer that can be shown.
 pub trait Present {
     /// The page.

@@ -1,6 +1,6 @@
 //! Motions, their chaos, and bifurcation diagrams.
 
-use super::{Present, parameter};
+use super::{Present, parameter, problem_at};
 use crate::figure::{Axis, Colour, Layer, Mark, colours};
 use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
@@ -37,12 +37,7 @@ fn jump(word: &str) -> Text {
 /// The problem with its values, and where it starts.
 fn head(header: &Header, start: &Begin, history: Option<&str>) -> Document {
     let unknowns = &start.unknowns;
-    let at: Vec<String> =
-        header.at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-    let title = match at.join(", ") {
-        at if at.is_empty() => header.problem.clone(),
-        at => format!("{}: {at}", header.problem),
-    };
+    let title = problem_at(header);
     let chosen = start.chosen.map(|chosen| format!(" ({chosen})")).unwrap_or_default();
     let name = unknowns.first().map_or("x", String::as_str);
     let [own, rate] = both(name);

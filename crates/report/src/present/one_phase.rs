@@ -1,6 +1,6 @@
 //! First-order averaging as numbers.
 
-use super::Present;
+use super::{Present, problem_at, stability_word};
 use crate::{Document, Formula, Table, Text};
 use lindstedt::evaluate::FirstOrder;
 use lindstedt::unstable::coeff::print::latex_name;
@@ -23,8 +23,6 @@ fn beside_cycles(found: &FirstOrder) -> Vec<(Text, Text)> {
 impl Present for Answer<FirstOrder> {
     fn document(&self) -> Document {
         let found = &self.value;
-        let at: Vec<String> = self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
-        let between = if at.is_empty() { "" } else { ": " };
         let small = latex_name(&found.parameter);
         let rate = |name: &str, latex: &str| {
             let text = format!("{name}/{} at a = {}", found.parameter, found.amplitude);
@@ -39,11 +37,8 @@ impl Present for Answer<FirstOrder> {
             line(rate("(psi' - omega)", r"(\dot\psi - \omega)"), &found.phase_rate),
         ];
         for cycle in &found.cycles {
-            let stable = match cycle.stable {
-                Some(true) => "stable",
-                Some(false) => "unstable",
-                None => "stability undecided (its exponent is zero within its error)",
-            };
+            let open = "stability undecided (its exponent is zero within its error)";
+            let stable = stability_word(cycle.stable, open);
             let words = match cycle.belt {
                 Some(belt) => format!("cycle, {stable}, {}, a", belt.word()),
                 None => format!("cycle, {stable}, a"),
@@ -70,7 +65,7 @@ impl Present for Answer<FirstOrder> {
                 lines.push((name, format!("nowhere up to a = {}", found.amplitude).into()));
             }
         }
-        Document::titled(format!("{}{between}{}", self.header.problem, at.join(", ")))
+        Document::titled(problem_at(&self.header))
             .words(format!(
                 "First order in {}, x = a cos psi, omega = {}; estimated. Changes of sign of a' are sought at \
                  amplitudes {:.5} apart: cycles that are closer are not excluded.",

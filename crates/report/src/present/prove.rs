@@ -1,7 +1,7 @@
 //! The orbit as a theorem.
 
-use super::Present;
 use super::evaluate::time;
+use super::{Present, problem_at};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table, Text};
 use lindstedt::evaluate::{ProofVerdict, ProvedOrbit, ProvedState};
@@ -22,12 +22,7 @@ fn shown(number: &Number) -> String {
 impl Present for Answer<ProvedOrbit> {
     fn document(&self) -> Document {
         let value = &self.value;
-        let values: Vec<String> =
-            self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
-        let title = match &values[..] {
-            [] => self.header.problem.clone(),
-            _ => format!("{}: {}", self.header.problem, values.join(", ")),
-        };
+        let title = problem_at(&self.header);
         let page = orbit(Document::titled(title), value);
         let others = value.further.len();
         let page = match others {

@@ -1,6 +1,6 @@
 //! Steady states at resonance: the states, the response curve with its backbone.
 
-use super::{Present, parameter};
+use super::{Present, parameter, stability_word, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::respond::{Change, Corner, Estimate, Point, Response, State, States};
@@ -22,11 +22,7 @@ fn title(answer: &Answer<Response>) -> String {
 }
 
 fn word(stable: Option<bool>) -> &'static str {
-    match stable {
-        Some(true) => "stable",
-        Some(false) => "unstable",
-        None => "neutral",
-    }
+    stability_word(stable, "neutral")
 }
 
 fn exponent([re, im]: &[Estimate; 2]) -> String {
@@ -228,7 +224,7 @@ fn curves(value: &Response, title: String, [across, up]: [Axis; 2]) -> Figure {
 impl Present for Answer<Response> {
     fn document(&self) -> Document {
         let value = &self.value;
-        let at: Vec<String> = self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
+        let at = values(&self.header);
         let whole = if value.complete {
             "all states of the truncated slow flow lie in it"
         } else {

@@ -1,6 +1,6 @@
 //! Period and frequency, or averaged rates, over swept parameters.
 
-use super::{Present, parameter};
+use super::{Present, parameter, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
 use lindstedt::evaluate::{Swept, SweptPeriod, SweptPoint, SweptRates};
@@ -80,7 +80,7 @@ fn parts(number: Option<&Number>) -> [String; 2] {
 
 fn title<P: Columns>(answer: &Answer<Swept<P>>) -> String {
     let order = answer.header.order.map(|order| format!(", order {order}"));
-    let at = answer.header.at.iter().map(|(name, value)| format!(", {name} = {value}"));
+    let at = values(&answer.header).into_iter().map(|at| format!(", {at}"));
     let (at, about) = (at.collect::<String>(), P::SHOWN.replace('_', " "));
     format!("{}: {about}{}{at}", answer.header.problem, order.unwrap_or_default())
 }

@@ -1,6 +1,6 @@
 //! The threshold of homoclinic chaos: its numbers, its curves, its map.
 
-use super::{Present, parameter};
+use super::{Present, parameter, problem_at};
 use crate::figure::{Axis, Colour, Mark, Raster, colours};
 use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
@@ -142,7 +142,6 @@ pub(super) fn verdict(words: &str) -> Text {
 impl Present for Answer<HomoclinicThreshold> {
     fn document(&self) -> Document {
         let value = &self.value;
-        let at: Vec<String> = self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
         let mut lines = numbers(value);
         lines.extend(orbits(value));
         lines.extend(value.second_order.iter().flat_map(second_order));
@@ -154,8 +153,7 @@ impl Present for Answer<HomoclinicThreshold> {
         if let Some(exact) = &value.gamma_c.exact {
             lines.push((gamma_c(" ="), Text::default().code(exact)));
         }
-        let between = if at.is_empty() { "" } else { ": " };
-        let title = format!("{}{between}{}", self.header.problem, at.join(", "));
+        let title = problem_at(&self.header);
         let page = Document::titled(title).lines(lines);
         value.sweep.iter().fold(page, |page, sweep| page.append(points(sweep)))
     }

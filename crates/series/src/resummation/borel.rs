@@ -144,7 +144,7 @@ mod tests {
         let sum = |sign: i32| {
             let b = borel_transform(&c(sign), &one, bits);
             laplace(
-                &Pade::new(&b, 10, 10, bits).unwrap(),
+                &Pade::new(&b, 10, 10, bits, &Stop::default()).unwrap(),
                 &one,
                 &Nodes::new(200, bits, &Stop::default()),
             )

@@ -41,9 +41,12 @@ const DOUBLINGS: u32 = 4;
 /// p doubled until the two values differ by less than an eighth of the error estimate or by less
 /// than 2^-`accuracy` relative; the difference is added to the error.
 ///
+/// `stop` is asked for every row of an elimination, every zero of a polynomial and every node of an integral; what was
+/// computed with one of them broken off is thrown away.
+///
 /// # Errors
 /// That of the method, or for `auto` that of the last method; [`ResummationError::NoCoefficients`]
-/// where the source gives none.
+/// where the source gives none; [`ResummationError::Stopped`].
 ///
 /// ```
 /// use lindstedt_series::resummation::{Method, Sample, resum};
@@ -58,7 +61,7 @@ const DOUBLINGS: u32 = 4;
 ///     radius: None,
 ///     bits,
 /// });
-/// let found = resum(&source, None, 100)?;
+/// let found = resum(&source, None, 100, &Default::default())?;
 /// assert_eq!(found.method, Method::BorelPade);
 /// // 10 e^10 E_1(10).
 /// let error = (found.outcome.estimate.value - 0.915_633_339_397_880_8f64).abs();
@@ -69,26 +72,12 @@ pub fn resum(
     source: &dyn Fn(u32) -> Option<Sample>,
     method: Option<Method>,
     accuracy: u32,
-) -> Result<Resummed, ResummationError> {
-    resum_until(source, method, accuracy, &Stop::default())
-}
-
-/// As [`resum`], or [`ResummationError::Stopped`] once `stop` said so. It is asked for every row of
-/// an elimination, every zero of a polynomial and every node of an integral; what was computed with
-/// one of them broken off is thrown away.
-///
-/// # Errors
-/// As [`resum`].
-pub fn resum_until(
-    source: &dyn Fn(u32) -> Option<Sample>,
-    method: Option<Method>,
-    accuracy: u32,
     stop: &Stop,
 ) -> Result<Resummed, ResummationError> {
     resum_with(source, method, accuracy, stop, &Shared::default())
 }
 
-/// As [`resum_until`] at one of many points: what does not depend on the point is made once.
+/// As [`resum`] at one of many points: what does not depend on the point is made once.
 ///
 /// # Errors
 /// As [`resum`].
@@ -345,7 +334,9 @@ mod tests {
                         Some(Method::ConformalPade),
                         Some(Method::BorelPade),
                     ] {
-                        let Ok(found) = resum(&source, method, 80) else { continue };
+                        let Ok(found) = resum(&source, method, 80, &Stop::default()) else {
+                            continue;
+                        };
                         let estimate = &found.outcome.estimate;
                         let error = distance(&estimate.value, &exact);
                         assert!(

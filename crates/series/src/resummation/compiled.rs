@@ -111,7 +111,7 @@ impl Compiled {
         let all = || Method::ALL.into_iter().filter(|method| *method != Method::BorelPade);
         let asked = if methods.is_empty() { all().collect() } else { methods.to_vec() };
         let conformal = asked.contains(&Method::ConformalPade);
-        let singularity = if conformal { sample.singularity_until(stop) } else { None };
+        let singularity = if conformal { sample.singularity(stop) } else { None };
         let mut failure = ResummationError::Undefined;
         let (mut methods, mut ways, mut formulas) = (Vec::new(), Vec::new(), Vec::new());
         for method in asked {
@@ -299,7 +299,7 @@ impl Table<'_> {
     fn variable(&self, x: &Float) -> f64 {
         let implicit = self.formulas.iter().position(Formula::is_implicit);
         let map = implicit.and_then(|index| self.ways.get(index)?.map.as_ref());
-        let w = map.and_then(|(map, _)| map.inverse_until(x, self.sample.bits, self.stop).ok());
+        let w = map.and_then(|(map, _)| map.inverse(x, self.sample.bits, self.stop).ok());
         w.map_or(f64::NAN, |w| w.to_f64())
     }
 }
@@ -356,8 +356,10 @@ mod tests {
                     let distance = (near.value - truth(x * (1.0 + 1e-6))).abs();
                     assert!(distance <= near.error, "{method:?} {x}: {distance:e} {near:?}");
                     let at = |bits| Sample { point: Float::with_val(bits, x), ..sample.clone() };
-                    let single =
-                        resum(&|bits| Some(at(bits)), method, 53).unwrap().outcome.estimate;
+                    let single = resum(&|bits| Some(at(bits)), method, 53, &Stop::default())
+                        .unwrap()
+                        .outcome
+                        .estimate;
                     let gap = (found.value - single.value.to_f64()).abs();
                     if found.error.is_finite() {
                         resolved += 1;

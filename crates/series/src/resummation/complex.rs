@@ -118,14 +118,9 @@ const MOST_SWEEPS: usize = 400;
 /// dropped), in ascending modulus: Aberth's simultaneous iteration from the radii of the Newton
 /// polygon. Nothing where it does not settle to a quarter of the bits. O(n^2) per sweep, some
 /// ten sweeps for simple zeros. More than 1024 bits and 32 per degree are not used: no zero is
-/// asked for to 300 digits.
+/// asked for to 300 digits. Nothing once `stop` said so, which is asked for every zero of every sweep.
 #[must_use]
-pub fn zeros(polynomial: &[Float], bits: u32) -> Option<Vec<Complex>> {
-    zeros_until(polynomial, bits, &Stop::default())
-}
-
-/// As [`zeros`]; nothing once `stop` said so, which is asked for every zero of every sweep.
-pub(super) fn zeros_until(polynomial: &[Float], bits: u32, stop: &Stop) -> Option<Vec<Complex>> {
+pub fn zeros(polynomial: &[Float], bits: u32, stop: &Stop) -> Option<Vec<Complex>> {
     let degree = u32::try_from(polynomial.len()).unwrap_or(u32::MAX);
     let bits = bits.min(degree.saturating_mul(32).saturating_add(1024));
     let rounded: Vec<Float> = polynomial.iter().map(|c| Float::with_val(bits, c)).collect();
@@ -253,7 +248,7 @@ mod tests {
             }
             p = next;
         }
-        let found = zeros(&p, bits).unwrap();
+        let found = zeros(&p, bits, &Stop::default()).unwrap();
         assert_eq!(found.len(), 7);
         for root in real {
             let near = |z: &Complex| {

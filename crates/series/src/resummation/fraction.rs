@@ -109,7 +109,7 @@ mod tests {
         let list = convergents(&c, 0, 300, &Stop::default()).unwrap();
         assert_eq!(list.len(), 25);
         for (k, found) in list {
-            let pade = Pade::new(&c, k - k / 2, k / 2, 300).unwrap();
+            let pade = Pade::new(&c, k - k / 2, k / 2, 300, &Stop::default()).unwrap();
             assert_eq!(found.degrees(), pade.degrees());
             let gap = found.value(&x).unwrap() - pade.value(&x).unwrap();
             assert!(gap.abs() < 1e-50, "{k}");

@@ -55,7 +55,7 @@ impl Made {
     }
 
     pub fn singularity(&self, stop: &Stop) -> Option<Singularity> {
-        self.singularity.get((), stop, || self.sample.singularity_until(stop))
+        self.singularity.get((), stop, || self.sample.singularity(stop))
     }
 
     /// As [`Sample::prepared`].
@@ -85,7 +85,7 @@ impl Made {
         let (list, bits) = (&self.sample.coefficients, self.sample.bits);
         let order = list.len().checked_sub(1).filter(|order| *order > 1)?;
         let half = order / 2;
-        let make = || Pade::until(stop, list, order - half, half, bits)?.picture_until(stop);
+        let make = || Pade::new(list, order - half, half, bits, stop)?.picture(stop);
         self.picture.get((), stop, make)
     }
 }
@@ -96,23 +96,11 @@ impl Sample {
     /// `singularity` is needed for [`Method::ConformalPade`] (see [`Self::singularity`]).
     /// `accuracy` is the number of bits beyond which a Laplace integral need not go.
     ///
+    /// `stop` is asked in all long loops, and nothing that was computed with one broken off is returned.
+    ///
     /// # Errors
     /// [`ResummationError`] where the method does not apply or gives no value.
     pub fn sum(
-        &self,
-        method: Method,
-        singularity: Option<&Singularity>,
-        accuracy: u32,
-    ) -> Result<Outcome, ResummationError> {
-        self.sum_until(method, singularity, accuracy, &Stop::default())
-    }
-
-    /// As [`Self::sum`], or [`ResummationError::Stopped`] once `stop` said so: it is asked in all
-    /// long loops, and nothing that was computed with one broken off is returned.
-    ///
-    /// # Errors
-    /// As [`Self::sum`].
-    pub fn sum_until(
         &self,
         method: Method,
         singularity: Option<&Singularity>,

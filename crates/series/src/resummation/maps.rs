@@ -106,18 +106,9 @@ impl Map {
     /// w at x.
     ///
     /// # Errors
-    /// [`ResummationError::OutsideMap`] for x <= -s, and where w is +-1 to a quarter of the bits.
-    pub fn inverse(&self, x: &Float, bits: u32) -> Result<Float, ResummationError> {
-        self.inverse_until(x, bits, &Stop::default())
-    }
-
-    /// As [`Self::inverse`], or [`ResummationError::Stopped`].
-    pub(super) fn inverse_until(
-        &self,
-        x: &Float,
-        bits: u32,
-        stop: &Stop,
-    ) -> Result<Float, ResummationError> {
+    /// [`ResummationError::OutsideMap`] for x <= -s, and where w is +-1 to a quarter of the bits;
+    /// [`ResummationError::Stopped`].
+    pub fn inverse(&self, x: &Float, bits: u32, stop: &Stop) -> Result<Float, ResummationError> {
         let (modulus, fraction) = match self {
             Self::Rational { scale } => {
                 let denominator = Float::with_val(bits, x + scale);
@@ -184,19 +175,9 @@ impl Map {
 
     /// The coefficients in w of (x'(0) w/x)^p sum c_n x(w)^n, bounded for f ~ x^p: the same order,
     /// O(N^3) products, O(N^2) for the rational map. The first factor is (1 - w)^p for the rational map.
+    /// It means nothing once `stop` said so.
     #[must_use]
-    pub fn expand(&self, c: &[Float], prefactor: &Float, bits: u32) -> Vec<Float> {
-        self.expand_until(c, prefactor, bits, &Stop::default())
-    }
-
-    /// As [`Self::expand`]; means nothing once `stop` said so.
-    pub(super) fn expand_until(
-        &self,
-        c: &[Float],
-        prefactor: &Float,
-        bits: u32,
-        stop: &Stop,
-    ) -> Vec<Float> {
+    pub fn expand(&self, c: &[Float], prefactor: &Float, bits: u32, stop: &Stop) -> Vec<Float> {
         let order = c.len().saturating_sub(1);
         let x = self.series(order, bits);
         let mut power = match self {
@@ -250,7 +231,7 @@ mod tests {
     fn inverse_and_series_agree() {
         for map in maps() {
             for x in [-0.2, -1e-30, 1e-40, 0.1, 0.25] {
-                let w = map.inverse(&float(x), BITS).unwrap();
+                let w = map.inverse(&float(x), BITS, &Stop::default()).unwrap();
                 let terms = map.series(120, BITS);
                 let value = terms.iter().rev().fold(Float::new(BITS), |sum, c| sum * &w + c);
                 let error = (value - float(x)).to_f64() / x;
@@ -265,7 +246,8 @@ mod tests {
         for map in maps() {
             for x in [-0.2, -1e-30, 1e-40, 0.25, 3.0, 1e6] {
                 let [low, high] = [BITS, 2 * BITS].map(|bits| {
-                    map.inverse(&Float::with_val(bits, x), bits).map(|w| Float::with_val(BITS, w))
+                    map.inverse(&Float::with_val(bits, x), bits, &Stop::default())
+                        .map(|w| Float::with_val(BITS, w))
                 });
                 let (Ok(low), Ok(high)) = (low, high) else { continue };
                 let error = (Float::with_val(53, &low - &high) / &high).abs();
@@ -279,8 +261,8 @@ mod tests {
     fn continuation() {
         let c: Vec<Float> = (0..61).map(|n| float(if n % 2 == 0 { 1.0 } else { -1.0 })).collect();
         let map = Map::Wedge { modulus: float(1.0), fraction: float(1.0) };
-        let w = map.inverse(&float(5.0), BITS).unwrap();
-        let terms = map.expand(&c, &float(0.0), BITS);
+        let w = map.inverse(&float(5.0), BITS, &Stop::default()).unwrap();
+        let terms = map.expand(&c, &float(0.0), BITS, &Stop::default());
         let value = terms.iter().rev().fold(Float::new(BITS), |sum, c| sum * &w + c);
         assert!((value * 6u32 - 1u32).abs() < 1e-15);
         // sqrt(1 + x + x^2) ~ x, bounded by the prefactor; its branch points by the wedge.
@@ -292,13 +274,16 @@ mod tests {
         }
         let map = Map::Wedge { modulus: float(1.0), fraction: float(2.0) / 3u32 };
         let (x, p) = (float(20.0), float(1.0));
-        let w = map.inverse(&x, BITS).unwrap();
-        let terms = map.expand(&c, &p, BITS);
+        let w = map.inverse(&x, BITS, &Stop::default()).unwrap();
+        let terms = map.expand(&c, &p, BITS, &Stop::default());
         let value = terms.iter().rev().fold(Float::new(BITS), |sum, c| sum * &w + c);
         let value = value * map.factor(&x, &w, &p, BITS);
         // Without the factor 2e-2.
         assert!((value - float(421.0).sqrt()).abs() < 1e-6);
         let rational = Map::Rational { scale: float(1.0) };
-        assert_eq!(rational.inverse(&float(-1.0), BITS), Err(ResummationError::OutsideMap));
+        assert_eq!(
+            rational.inverse(&float(-1.0), BITS, &Stop::default()),
+            Err(ResummationError::OutsideMap)
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! The methods, and what they are given.
 
 use super::estimate::sizes;
-use super::singularity::nearest_singularity_until;
+use super::singularity::nearest_singularity;
 use super::{Growth, ResummationError, Singularity, growth};
 use lindstedt_algebra::Stop;
 use rug::Float;
@@ -139,14 +139,9 @@ impl Sample {
     }
 
     /// The nearest singularity in the coefficients, on the circle of convergence where that is known
-    /// (see [`nearest_singularity`](super::nearest_singularity)).
+    /// (see [`nearest_singularity`](super::nearest_singularity)); nothing once `stop` said so.
     #[must_use]
-    pub fn singularity(&self) -> Option<Singularity> {
-        self.singularity_until(&Stop::default())
-    }
-
-    /// As [`Self::singularity`]; nothing once `stop` said so.
-    pub(super) fn singularity_until(&self, stop: &Stop) -> Option<Singularity> {
-        nearest_singularity_until(&self.coefficients, self.radius, self.bits, stop)
+    pub fn singularity(&self, stop: &Stop) -> Option<Singularity> {
+        nearest_singularity(&self.coefficients, self.radius, self.bits, stop)
     }
 }

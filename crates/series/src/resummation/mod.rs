@@ -26,7 +26,7 @@ mod singularity;
 mod staircase;
 
 pub use borel::borel_transform;
-pub use choose::{Resummed, resum, resum_until, resum_with};
+pub use choose::{Resummed, resum, resum_with};
 pub use compiled::{Compiled, Estimated};
 pub use complex::Complex;
 pub use error::ResummationError;

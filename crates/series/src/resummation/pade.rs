@@ -5,7 +5,7 @@
 //! approximant has smaller degrees, and these are used (P. Gonnet, S. Guttel, L. N. Trefethen,
 //! SIAM Review 55 (2013) 101): a rational function is recovered as such.
 
-use super::complex::{Complex, derivative, evaluate, zeros_until};
+use super::complex::{Complex, derivative, evaluate, zeros};
 use super::linear::Echelon;
 use lindstedt_algebra::Stop;
 use rug::Float;
@@ -87,27 +87,21 @@ impl Pade {
     /// [l/m] from the coefficients c_0 .. c_{l+m}, of which all bits are taken to be right.
     /// Nothing where there are fewer coefficients, or one is not finite.
     ///
-    /// Cost O(m^3) products.
+    /// Cost O(m^3) products. Nothing once `stop` said so.
     ///
     /// ```
     /// use lindstedt_series::resummation::Pade;
     /// use rug::Float;
     /// // 1/(1 + x): the [3/3] approximant is the [0/1] one.
     /// let c: Vec<Float> = (0..7).map(|n| Float::with_val(200, if n % 2 == 0 { 1 } else { -1 })).collect();
-    /// let pade = Pade::new(&c, 3, 3, 200).ok_or("too few coefficients")?;
+    /// let pade = Pade::new(&c, 3, 3, 200, &Default::default()).ok_or("too few coefficients")?;
     /// assert_eq!(pade.degrees(), (0, 1));
     /// let half = pade.value(&Float::with_val(200, 1)).ok_or("a pole")?;
     /// assert!((half - 0.5f64).abs() < 1e-55);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn new(c: &[Float], l: usize, m: usize, bits: u32) -> Option<Self> {
-        Self::until(&Stop::default(), c, l, m, bits)
-    }
-
-    /// As [`Self::new`]; nothing once `stop` said so.
-    #[must_use]
-    pub fn until(stop: &Stop, c: &[Float], l: usize, m: usize, bits: u32) -> Option<Self> {
+    pub fn new(c: &[Float], l: usize, m: usize, bits: u32, stop: &Stop) -> Option<Self> {
         let c = c.get(..=l.checked_add(m)?)?;
         if !c.iter().all(Float::is_finite) {
             return None;
@@ -259,17 +253,11 @@ impl Pade {
     }
 
     /// The poles and zeros, with the doublets marked. Nothing where the iteration for the
-    /// zeros of a polynomial does not settle.
+    /// zeros of a polynomial does not settle, and once `stop` said so.
     #[must_use]
-    pub fn picture(&self) -> Option<Picture> {
-        self.picture_until(&Stop::default())
-    }
-
-    /// As [`Self::picture`]; nothing once `stop` said so.
-    #[must_use]
-    pub fn picture_until(&self, stop: &Stop) -> Option<Picture> {
+    pub fn picture(&self, stop: &Stop) -> Option<Picture> {
         let at = |p: &[Float]| -> Option<Vec<Complex>> {
-            if p.len() < 2 { Some(Vec::new()) } else { zeros_until(p, self.bits, stop) }
+            if p.len() < 2 { Some(Vec::new()) } else { zeros(p, self.bits, stop) }
         };
         let (zeros, poles) = (at(&self.numerator)?, at(&self.denominator)?);
         let slope = derivative(&self.denominator);
@@ -293,24 +281,13 @@ impl Pade {
         })
     }
 
-    /// [l/m] with the doublets removed by lowering both degrees until none is left.
+    /// [l/m] with the doublets removed by lowering both degrees until none is left; nothing once `stop` said so.
     #[must_use]
-    pub fn robust(c: &[Float], l: usize, m: usize, bits: u32) -> Option<Self> {
-        Self::robust_until(&Stop::default(), c, l, m, bits)
-    }
-
-    /// As [`Self::robust`]; nothing once `stop` said so.
-    pub(super) fn robust_until(
-        stop: &Stop,
-        c: &[Float],
-        l: usize,
-        m: usize,
-        bits: u32,
-    ) -> Option<Self> {
+    pub fn robust(c: &[Float], l: usize, m: usize, bits: u32, stop: &Stop) -> Option<Self> {
         let (mut l, mut m) = (l, m);
         loop {
-            let pade = Self::until(stop, c, l, m, bits)?;
-            let picture = pade.picture_until(stop);
+            let pade = Self::new(c, l, m, bits, stop)?;
+            let picture = pade.picture(stop);
             if stop.asked() {
                 return None;
             }
@@ -355,7 +332,7 @@ mod tests {
     fn exponential_function() {
         let c = series(|n| Rational::from((1, rug::Integer::from(rug::Integer::factorial(n)))));
         let one = Float::with_val(BITS, 1);
-        let value = Pade::new(&c, 5, 5, BITS).unwrap().value(&one).unwrap();
+        let value = Pade::new(&c, 5, 5, BITS, &Stop::default()).unwrap().value(&one).unwrap();
         let error = value - one.exp();
         assert!((error.to_f64() / 2.766_504_9e-10 - 1.0).abs() < 1e-7, "{error}");
     }
@@ -378,9 +355,9 @@ mod tests {
         }
         let floats: Vec<Float> = c.iter().map(|x| Float::with_val(BITS, x)).collect();
         for (l, m) in [(20, 20), (10, 10), (3, 17), (1, 3)] {
-            let pade = Pade::new(&floats, l, m, BITS).unwrap();
+            let pade = Pade::new(&floats, l, m, BITS, &Stop::default()).unwrap();
             assert_eq!(pade.degrees(), (1, 3), "[{l}/{m}]");
-            let picture = pade.picture().unwrap();
+            let picture = pade.picture(&Stop::default()).unwrap();
             let moduli: Vec<f64> = picture.poles.iter().map(|p| p.at.abs().to_f64()).collect();
             for (found, exact) in moduli.iter().zip([2.0, 2.0, 3.0]) {
                 assert!((found - exact).abs() < 1e-12);
@@ -399,10 +376,11 @@ mod tests {
             (state >> 33) as f64 / 2f64.powi(31) - 0.5
         };
         let c: Vec<Float> = (0..21).map(|_| Float::with_val(BITS, 1.0 + 1e-12 * noise())).collect();
-        let plain = Pade::new(&c, 10, 10, BITS).unwrap();
-        let doublets = plain.picture().unwrap().poles.iter().filter(|p| p.doublet).count();
+        let plain = Pade::new(&c, 10, 10, BITS, &Stop::default()).unwrap();
+        let doublets =
+            plain.picture(&Stop::default()).unwrap().poles.iter().filter(|p| p.doublet).count();
         assert_eq!((plain.degrees().1, doublets), (10, 9));
-        let robust = Pade::robust(&c, 10, 10, BITS).unwrap();
+        let robust = Pade::robust(&c, 10, 10, BITS, &Stop::default()).unwrap();
         assert_eq!(robust.degrees().1, 1);
         let value = robust.value(&Float::with_val(BITS, -3)).unwrap();
         assert!((value - 0.25f64).abs() < 1e-9);

@@ -65,7 +65,7 @@ impl Sample {
             }
         };
         let own = &self.coefficients;
-        let expand = |(map, p): &(Map, Float)| map.expand_until(own, p, self.bits, stop);
+        let expand = |(map, p): &(Map, Float)| map.expand(own, p, self.bits, stop);
         let series = || map.as_ref().map_or_else(|| own.clone(), expand);
         let way = match method {
             Method::PartialSum => Way::Series,
@@ -92,7 +92,7 @@ impl Prepared {
         let mut w = point.clone();
         let mut factor = None;
         if let Some((map, p)) = &self.map {
-            w = map.inverse_until(point, bits, stop)?;
+            w = map.inverse(point, bits, stop)?;
             factor = Some(map.factor(point, &w, p, bits));
         }
         let outcome = match &self.way {

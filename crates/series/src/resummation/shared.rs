@@ -25,7 +25,7 @@ const KEPT: usize = 16;
 /// let shared = Shared::default();
 /// for x in [0.5, 1.5] {
 ///     let found = resum_with(&sample(x), None, 100, &Default::default(), &shared)?;
-///     let alone = resum(&sample(x), None, 100)?;
+///     let alone = resum(&sample(x), None, 100, &Default::default())?;
 ///     assert_eq!(found.outcome.estimate.value, alone.outcome.estimate.value);
 /// }
 /// # Ok::<(), lindstedt_series::resummation::ResummationError>(())
@@ -59,7 +59,7 @@ impl Shared {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
-    use super::super::{Method, UniformMap, resum_until, resum_with};
+    use super::super::{Method, UniformMap, resum, resum_with};
     use super::*;
     use rug::{Float, Rational};
 
@@ -93,7 +93,7 @@ mod tests {
             for x in [-0.4, 0.1, 0.75, 3.0] {
                 for which in [0, 1] {
                     let source = series(which, x);
-                    let alone = resum_until(&source, method, 100, &stop);
+                    let alone = resum(&source, method, 100, &stop);
                     let found = resum_with(&source, method, 100, &stop, &shared);
                     let [alone, found] = [alone, found].map(|found| {
                         let it = found.ok()?;

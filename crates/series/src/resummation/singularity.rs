@@ -9,7 +9,7 @@
 //! and B regular: poles, branch points with any exponent, logarithms (alpha = 0), in pairs or
 //! not. Zeros that other degrees do not reproduce are spurious.
 
-use super::complex::{derivative, evaluate, zeros_until};
+use super::complex::{derivative, evaluate, zeros};
 use super::estimate::distance;
 use super::linear::Echelon;
 use super::maps::multiply;
@@ -86,7 +86,7 @@ fn approximant(
     let (p1, others) = vector.split_at_checked(top + 1)?;
     let p0 = others.get(..=middle)?;
     let slope = derivative(p1);
-    let found = zeros_until(p1, bits, stop)?;
+    let found = zeros(p1, bits, stop)?;
     let exponent = |z: &Complex| evaluate(p0, z).div(&evaluate(&slope, z));
     let upper = found.into_iter().filter(|z| !z.im.is_sign_negative() || z.im.is_zero() || tiny(z));
     let list = upper.map(|z| {
@@ -99,18 +99,6 @@ fn approximant(
 /// Whether a zero is real but for rounding.
 fn tiny(z: &Complex) -> bool {
     z.im.clone().abs() < z.abs() >> (z.re.prec() / 4)
-}
-
-/// The nearest singularity that several approximants from the last coefficients agree upon.
-///
-/// Its modulus is the radius of convergence: a zero that contradicts `radius`, where that is known,
-/// or else the growth of the coefficients ([`growth`], within the error of both) is spurious.
-/// Nothing for fewer than 12 coefficients, where no zero is stable, and for coefficients that grow
-/// or fall factorially. The error is the largest disagreement, also with what a third, half and three
-/// quarters of the coefficients say; estimated, not proved. Cost: twelve eliminations of N^3/3 products.
-#[must_use]
-pub fn nearest_singularity(c: &[Float], radius: Option<f64>, bits: u32) -> Option<Singularity> {
-    nearest_singularity_until(c, radius, bits, &Stop::default())
 }
 
 /// As [`nearest_singularity`], without the comparison; nothing once `stop` said so.
@@ -206,10 +194,19 @@ const PARTS: [(usize, usize); 3] = [(1, 3), (1, 2), (3, 4)];
 /// Two places nearer to each other than this part of the modulus are the same singularity.
 const DISPUTED: f64 = 0.25;
 
+/// The nearest singularity that several approximants from the last coefficients agree upon.
+///
+/// Its modulus is the radius of convergence: a zero that contradicts `radius`, where that is known,
+/// or else the growth of the coefficients ([`growth`], within the error of both) is spurious.
+/// Nothing for fewer than 12 coefficients, where no zero is stable, and for coefficients that grow
+/// or fall factorially. The error is the largest disagreement, also with what a third, half and three
+/// quarters of the coefficients say; estimated, not proved. Nothing once `stop` said so. Cost: twelve eliminations of N^3/3 products.
+///
 /// Where fewer coefficients state, with their error, another place, one of the two errors is wrong: the
 /// difference is the error. (Of x'' + x + eps (8/3 x^4 + 4/3 x^2 + x^5) = 0 orders 40 to 64 agree on
 /// 0.1323 +- 1e-5, orders 24 and 30 on the saddle, at 0.137632.)
-pub(super) fn nearest_singularity_until(
+#[must_use]
+pub fn nearest_singularity(
     c: &[Float],
     radius: Option<f64>,
     bits: u32,
@@ -340,7 +337,7 @@ mod tests {
             for (x, y) in c.iter_mut().zip(power(-1.0, -5.0, order)) {
                 *x += y;
             }
-            let found = nearest_singularity(&c, None, BITS).unwrap();
+            let found = nearest_singularity(&c, None, BITS, &Stop::default()).unwrap();
             let true_error = (found.at.re.clone() + 2u32).abs();
             assert!(true_error < 1e-8, "{p}: {true_error}");
             assert!(true_error <= found.error.clone(), "{p}: {true_error} {}", found.error);
@@ -363,7 +360,8 @@ mod tests {
         let exponential = |n: u32| Float::with_val(BITS, Float::factorial(n)).recip();
         let log: Vec<Float> = (0..=order).map(term).collect();
         let smooth: Vec<Float> = (0..=order).map(exponential).collect();
-        let found = nearest_singularity(&multiply(&log, &smooth, BITS), None, BITS);
+        let found =
+            nearest_singularity(&multiply(&log, &smooth, BITS), None, BITS, &Stop::default());
         let found = found.unwrap();
         assert!((found.at.re.to_f64() + 3.0).abs() < 1e-8);
         assert_eq!(found.kind, Kind::Logarithm);

@@ -49,7 +49,7 @@ impl Staircase {
             if stop.asked() {
                 return Err(ResummationError::Stopped);
             }
-            let Some(pade) = Pade::until(stop, c, l, m, bits) else { continue };
+            let Some(pade) = Pade::new(c, l, m, bits, stop) else { continue };
             // Inside a block of the table there is none: one of lower degree ignores coefficients.
             if pade.degrees() == (l, m) || pade.begins_with(&c[..=k]) {
                 steps.push((k, pade));
@@ -99,7 +99,7 @@ impl Staircase {
     ) -> Result<Outcome, ResummationError> {
         let order = self.coefficients.len().saturating_sub(1);
         let robust = |(l, m)| {
-            let pade = || Pade::robust_until(stop, &self.coefficients, l, m, self.bits);
+            let pade = || Pade::robust(&self.coefficients, l, m, self.bits, stop);
             let pade = || self.repaired.get((l, m), stop, || pade().map(Arc::new));
             self.repairs.then(pade)?
         };

@@ -209,7 +209,7 @@ fn check(g: &mut Generator, count: &mut Count, failures: &mut Vec<String>) {
     };
     let exact = function.value(x);
     for method in std::iter::once(None).chain(Method::ALL.map(Some)) {
-        let Ok(found) = resum(&source, method, ACCURACY) else {
+        let Ok(found) = resum(&source, method, ACCURACY, &Default::default()) else {
             count.refused += 1;
             continue;
         };
