@@ -109,6 +109,15 @@ pub fn equivalent_orbit<S: Real>(
     flow: &Flow<S>,
     drive: &Drive<S>,
 ) -> Result<EquivalentOrbit<S>, ImpactError> {
+    equivalent_orbit_here(flow, drive)
+}
+
+/// The same where a caller needs a few of its numbers, along a chart: the others are not computed.
+#[inline(always)]
+pub(crate) fn equivalent_orbit_here<S: Real>(
+    flow: &Flow<S>,
+    drive: &Drive<S>,
+) -> Result<EquivalentOrbit<S>, ImpactError> {
     flow.validate()?;
     let Flow { growth_rate: rate, frequency } = flow;
     let Drive { omega, period, restitution, wall: s, forced_amplitude, branch } = drive;

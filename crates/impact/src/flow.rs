@@ -62,12 +62,14 @@ pub(crate) struct Scratch<S> {
     delayed: Vec<Complex<S>>,
     /// w_n.
     coupled: Vec<Complex<S>>,
+    /// The sum of all lambda_n.
+    sum: Option<Complex<S>>,
 }
 
 impl<S: Real> Scratch<S> {
     pub(crate) fn new(order: usize) -> Self {
         let buffer = || Vec::with_capacity(order.min(1 << 16) + 1);
-        Self { terms: buffer(), slopes: buffer(), delayed: buffer(), coupled: buffer() }
+        Self { terms: buffer(), slopes: buffer(), delayed: buffer(), coupled: buffer(), sum: None }
     }
     /// Runs the recursion; allocates only while the buffers grow.
     pub(crate) fn fill(
@@ -81,14 +83,16 @@ impl<S: Real> Scratch<S> {
         for buffer in [&mut self.terms, &mut self.slopes, &mut self.delayed, &mut self.coupled] {
             buffer.clear();
         }
-        self.terms.push(Complex::new(alpha.integer(0), alpha.clone()));
+        let free = Complex::new(alpha.integer(0), alpha.clone());
+        // The last numbers by themselves: read back from a list they would wait for the list to be written.
+        let (mut sum, mut last, mut e) = (free.clone(), free.clone(), delay.clone());
+        self.terms.push(free);
         self.delayed.push(delay.clone());
         let half_inverse = alpha.integer(1) / alpha.doubled();
         let loss = b.clone() - damping;
         for m in 1..=order {
-            let e = &self.delayed[m - 1];
             let driven = e.scaled(b);
-            let mut g = self.terms[m - 1].scaled(&loss) - e.scaled(a);
+            let mut g = last.scaled(&loss) - e.scaled(a);
             if m == 1 {
                 g.re = g.re + a;
             }
@@ -100,13 +104,17 @@ impl<S: Real> Scratch<S> {
             // 1/(2 i alpha)
             let next = Complex::new(g.im * &half_inverse, -(g.re * &half_inverse));
             if m < order {
-                self.continue_with(&next, driven, time);
+                e = self.continue_with(&next, driven, time);
+                self.delayed.push(e.clone());
             }
-            self.terms.push(next);
+            sum = sum + &next;
+            self.terms.push(next.clone());
+            last = next;
         }
+        self.sum = Some(sum);
     }
     /// w_(m-1) and e_m from lambda_m and B e_(m-1).
-    fn continue_with(&mut self, next: &Complex<S>, driven: Complex<S>, time: &S) {
+    fn continue_with(&mut self, next: &Complex<S>, driven: Complex<S>, time: &S) -> Complex<S> {
         let m = i64::try_from(self.terms.len()).unwrap_or(i64::MAX);
         let weight = time.integer(m);
         self.coupled.push(driven + next);
@@ -114,13 +122,12 @@ impl<S: Real> Scratch<S> {
         let zero = Complex::real(time.integer(0));
         let products = self.slopes.iter().zip(self.delayed.iter().rev());
         let sum = products.fold(zero, |sum, (slope, e)| sum + slope.clone() * e);
-        self.delayed.push(sum.scaled(&-(time.clone() / weight)));
+        sum.scaled(&-(time.clone() / weight))
     }
     /// The flow of the sum of all terms (eps = 1).
     pub(crate) fn flow(&self) -> Option<Flow<S>> {
-        let (first, rest) = self.terms.split_first()?;
-        let sum = rest.iter().fold(first.clone(), |sum, term| sum + term);
-        Some(Flow { growth_rate: sum.re, frequency: sum.im })
+        let Complex { re, im } = self.sum.clone()?;
+        Some(Flow { growth_rate: re, frequency: im })
     }
 }
 

@@ -17,7 +17,7 @@ use crate::map::Verdict;
 use crate::orbit::Orbit;
 use crate::parameters::Parameters;
 use lindstedt_algebra::Stop;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// Within this of 1 a rate is looked at with finer flights.
 const BAND: f64 = 1e-3;
@@ -40,6 +40,21 @@ pub struct Growth {
 }
 
 impl Growth {
+    /// From the logarithms of the growths of single flights.
+    fn of(logarithms: &[f64]) -> Self {
+        let full = weighted_mean(logarithms);
+        let part = |sixths: [usize; 2]| {
+            let [from, to] = sixths.map(|k| k * logarithms.len() / 6);
+            weighted_mean(logarithms.get(from..to).unwrap_or_default())
+        };
+        let change = |found: f64| (found - full).abs();
+        let unsettled =
+            [[0, 4], [1, 5], [2, 6]].map(part).map(change).into_iter().fold(0.0, f64::max);
+        let rate = full.exp();
+        let spread = (part([0, 3]).exp() - part([3, 6]).exp()).abs();
+        Self { rate, spread, error: 2.0 * rate * unsettled }
+    }
+
     /// Stable or unstable; neutral within the error of 1.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
@@ -69,22 +84,24 @@ impl Growth {
 /// // An unstable flip: every impact is off by -1.455 times the error of the one before.
 /// assert!((delays[19] / delays[18] + 1.4555).abs() < 1e-3);
 /// ```
-pub struct ReturnMap {
+pub struct ReturnMap<const W: usize = 1> {
     restitution: f64,
     velocity_gain: f64,
     velocity: f64,
     saltation: f64,
     displacement_gain: f64,
-    /// (y, y') at the nodes from a force at the nodes: 2 n x n.
-    force_response: DMatrix<f64>,
-    /// (y, y') at the nodes from y(0), y'(0): 2 n x 2.
-    entry_response: DMatrix<f64>,
-    flight: DVector<f64>,
-    /// -A y - B y' at the nodes of the flight before.
-    force: DVector<f64>,
-    entry: DVector<f64>,
-    late: f64,
+    /// (y, y') at the nodes from what causes them: eight rows after the other, of each the columns.
+    response: Vec<[f64; ROWS]>,
+    /// y(0), y'(0) and -A y - B y' at the nodes of the flight before, of W perturbations side by side.
+    causes: Vec<[f64; W]>,
+    /// y at the nodes, then y', then zeros up to a multiple of eight.
+    flight: Vec<[f64; W]>,
+    late: [f64; W],
+    arch: pulp::Arch,
 }
+
+/// Rows of a response that are formed at a time.
+const ROWS: usize = 8;
 
 impl ReturnMap {
     /// y' = u, u' = -(c - B) u - (alpha^2 - A) y - A y_before - B u_before, at Chebyshev points of
@@ -96,8 +113,19 @@ impl ReturnMap {
     pub fn new(parameters: &Parameters<f64>, orbit: &Orbit<f64>) -> Result<Self, ImpactError> {
         Self::finer(parameters, orbit, 0)
     }
+    /// Starts with an unperturbed past and the perturbation (y(0), y'(0)).
+    pub fn start(&mut self, entry: [f64; 2]) {
+        self.start_all(&[entry]);
+    }
+    /// One flight and impact: returns by how much the impact comes late, delta_l.
+    pub fn fly(&mut self) -> f64 {
+        self.fly_all();
+        self.late[0]
+    }
+}
 
-    /// [`Self::new`] with so many points more.
+impl<const W: usize> ReturnMap<W> {
+    /// [`ReturnMap::new`] with so many points more.
     fn finer(
         parameters: &Parameters<f64>,
         orbit: &Orbit<f64>,
@@ -113,76 +141,109 @@ impl ReturnMap {
         let n = points as usize + more;
         let d = differentiation(n) * (2.0 / orbit.period);
         let mut system = DMatrix::zeros(2 * n, 2 * n);
-        let mut force = DMatrix::zeros(2 * n, n);
-        let mut start = DMatrix::zeros(2 * n, 2);
+        // y(0), y'(0), the force at the nodes.
+        let mut causes = DMatrix::zeros(2 * n, 2 + n);
         system.view_mut((0, 0), (n, n)).copy_from(&d);
         system.view_mut((n, n), (n, n)).copy_from(&d);
         for j in 0..n {
             system[(j, n + j)] -= 1.0;
             system[(n + j, j)] += alpha * alpha - a;
             system[(n + j, n + j)] += damping - b;
-            force[(n + j, j)] = 1.0;
+            causes[(n + j, 2 + j)] = 1.0;
         }
         // Node 0 is t = 0: the start replaces the equation there.
         for (row, column) in [(0, 0), (n, 1)] {
             system.row_mut(row).fill(0.0);
-            force.row_mut(row).fill(0.0);
+            causes.row_mut(row).fill(0.0);
             system[(row, row)] = 1.0;
-            start[(row, column)] = 1.0;
+            causes[(row, column)] = 1.0;
         }
-        let factors = system.lu();
         let singular = ImpactError::NoConvergence { what: "the flight between two impacts" };
-        let solved = factors.solve(&force).zip(factors.solve(&start));
-        let (force_response, entry_response) = solved.ok_or(singular)?;
+        let solved = system.lu().solve(&causes).ok_or(singular)?;
+        let rows = (2 * n).next_multiple_of(ROWS);
+        let entry = |row, column| if row < 2 * n { solved[(row, column)] } else { 0.0 };
+        let eight = |row: usize, column| std::array::from_fn(|k| entry(row + k, column));
+        let columns = |row| (0..2 + n).map(move |column| (row, column));
+        let places = (0..rows).step_by(ROWS).flat_map(columns);
         Ok(Self {
             restitution: parameters.restitution,
             velocity_gain: b,
             velocity: orbit.velocity,
             saltation: orbit.saltation,
             displacement_gain: a,
-            force_response,
-            entry_response,
-            flight: DVector::zeros(2 * n),
-            force: DVector::zeros(n),
-            entry: DVector::zeros(2),
-            late: 0.0,
+            response: places.map(|(row, column)| eight(row, column)).collect(),
+            causes: vec![[0.0; W]; 2 + n],
+            flight: vec![[0.0; W]; rows],
+            late: [0.0; W],
+            arch: pulp::Arch::new(),
         })
     }
-    /// Starts with an unperturbed past and the perturbation (y(0), y'(0)).
-    pub fn start(&mut self, entry: [f64; 2]) {
-        self.flight.fill(0.0);
-        self.entry.copy_from_slice(&entry);
-        self.late = 0.0;
+    fn points(&self) -> usize {
+        self.causes.len() - 2
     }
-    /// One flight and impact: returns by how much the impact comes late, delta_l.
-    pub fn fly(&mut self) -> f64 {
-        let n = self.flight.nrows() / 2;
+    fn start_all(&mut self, entries: &[[f64; 2]; W]) {
+        self.flight.fill([0.0; W]);
+        self.set_entries(entries);
+        self.late = [0.0; W];
+    }
+    fn set_entries(&mut self, entries: &[[f64; 2]; W]) {
+        self.causes[0] = entries.map(|entry| entry[0]);
+        self.causes[1] = entries.map(|entry| entry[1]);
+    }
+    /// One flight and impact of every perturbation.
+    fn fly_all(&mut self) {
+        let n = self.points();
         let (a, b) = (self.displacement_gain, self.velocity_gain);
-        let (y, u) = self.flight.as_slice().split_at(n);
-        for (force, (y, u)) in self.force.iter_mut().zip(y.iter().zip(u)) {
-            *force = -a * y - b * u;
+        let (y, u) = self.flight.split_at(n);
+        for (force, (y, u)) in self.causes[2..].iter_mut().zip(y.iter().zip(u)) {
+            *force = std::array::from_fn(|w| -a * y[w] - b * u[w]);
         }
-        self.flight.gemv(1.0, &self.entry_response, &self.entry, 0.0);
-        self.flight.gemv(1.0, &self.force_response, &self.force, 1.0);
+        let (response, causes) = (&self.response[..], &self.causes[..]);
+        self.arch.dispatch(Flight { response, causes, flight: &mut self.flight });
         let (y, y_slope) = (self.flight[n - 1], self.flight[2 * n - 1]);
         let (r, v) = (self.restitution, self.velocity);
-        let late = -y / v;
-        let chi = if late > self.late { -r } else { 1.0 };
-        let kick = chi * self.velocity_gain * (1.0 + r) * v * (late - self.late);
-        self.entry[0] = -r * y;
-        self.entry[1] = self.saltation * y - r * y_slope + kick;
-        self.late = late;
-        late
+        let entries = std::array::from_fn(|w| {
+            let late = -y[w] / v;
+            let chi = if late > self.late[w] { -r } else { 1.0 };
+            let kick = chi * b * (1.0 + r) * v * (late - self.late[w]);
+            self.late[w] = late;
+            [-r * y[w], self.saltation * y[w] - r * y_slope[w] + kick]
+        });
+        self.set_entries(&entries);
     }
-    /// The size of the state; divides the state by it.
-    fn normalise(&mut self) -> f64 {
-        let size = self.flight.amax().max(self.entry.amax());
-        if size > 0.0 && size.is_finite() {
-            self.flight /= size;
-            self.entry /= size;
-            self.late /= size;
+    /// The sizes of the states; divides the states by them.
+    fn normalise(&mut self) -> [f64; W] {
+        let larger = |a: [f64; W], b: &[f64; W]| std::array::from_fn(|w| a[w].max(b[w].abs()));
+        let sizes = self.flight.iter().chain(&self.causes[..2]).fold([0.0; W], larger);
+        let divisor = sizes.map(|size| if size > 0.0 && size.is_finite() { size } else { 1.0 });
+        let states = self.flight.iter_mut().chain(&mut self.causes[..2]).chain([&mut self.late]);
+        states.for_each(|state| *state = std::array::from_fn(|w| state[w] / divisor[w]));
+        sizes
+    }
+}
+
+/// The flight from its causes, by the widest vectors that the processor has: the same sums by any.
+struct Flight<'m, const W: usize> {
+    response: &'m [[f64; ROWS]],
+    causes: &'m [[f64; W]],
+    flight: &'m mut [[f64; W]],
+}
+
+impl<const W: usize> pulp::NullaryFnOnce for Flight<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let blocks = self.response.chunks_exact(self.causes.len());
+        for (columns, rows) in blocks.zip(self.flight.as_chunks_mut::<ROWS>().0) {
+            let mut sums = [[0.0; W]; ROWS];
+            for (column, cause) in columns.iter().zip(self.causes) {
+                for (sum, c) in sums.iter_mut().zip(column) {
+                    sum.iter_mut().zip(cause).for_each(|(sum, x)| *sum += c * x);
+                }
+            }
+            *rows = sums;
         }
-        size
     }
 }
 
@@ -252,23 +313,22 @@ fn run(
     flights: usize,
     stop: &Stop,
 ) -> Result<Run, ImpactError> {
-    let mut map = ReturnMap::new(parameters, orbit)?;
+    let mut map = ReturnMap::finer(parameters, orbit, 0)?;
     let starts = [[1.0, 0.3], [-1.0, -0.3], [0.2, 1.0], [-0.2, -1.0]];
     let starts = starts.map(|start| start.map(|part| part * orbit.velocity));
     let mut largest = (starts[0], Growth { rate: 0.0, spread: 0.0, error: 0.0 });
     let (mut next, mut unsettled): (f64, f64) = (0.0, 0.0);
-    for start in starts {
-        let found = growth_of_run(&mut map, start, flights, stop)?;
+    for (start, found) in starts.iter().zip(growths(&mut map, &starts, flights, stop)?) {
         unsettled = unsettled.max(found.error);
         if found.rate >= largest.1.rate {
             next = largest.1.rate;
-            largest = (start, found);
+            largest = (*start, found);
         } else {
             next = next.max(found.rate);
         }
     }
     let (start, mut growth) = largest;
-    let points = map.force.len() as f64;
+    let points = map.points() as f64;
     let unit = 2.0 * f64::EPSILON;
     let rounding = unit * points * (1.0 + points / (flights.max(1) as f64).sqrt());
     growth.error = unsettled + (growth.rate - next) + rounding * growth.rate.max(1.0);
@@ -288,7 +348,7 @@ impl Run {
         let mut change: f64 = 0.0;
         for more in MORE_POINTS {
             let mut map = ReturnMap::finer(parameters, orbit, more)?;
-            let other = growth_of_run(&mut map, self.start, flights, stop)?;
+            let [other] = growths(&mut map, &[self.start], flights, stop)?;
             change = change.max((other.rate - growth.rate).abs());
         }
         growth.error += change;
@@ -296,40 +356,33 @@ impl Run {
     }
 }
 
-/// The growth from one start, the first quarter of the run left out; its error is that of the run alone.
-fn growth_of_run(
-    map: &mut ReturnMap,
-    start: [f64; 2],
+/// The growths from some starts, the first quarter of the runs left out; their errors are those of the runs alone.
+fn growths<const W: usize>(
+    map: &mut ReturnMap<W>,
+    starts: &[[f64; 2]; W],
     flights: usize,
     stop: &Stop,
-) -> Result<Growth, ImpactError> {
-    map.start(start);
+) -> Result<[Growth; W], ImpactError> {
+    map.start_all(starts);
     let skip = flights / 4;
-    let mut logarithms = Vec::with_capacity(flights);
+    let mut logarithms: [Vec<f64>; W] = std::array::from_fn(|_| Vec::with_capacity(flights));
+    let mut vanished = [false; W];
     for l in 0..flights {
         check(stop)?;
-        map.fly();
-        let size = map.normalise();
-        if !size.is_finite() {
-            return Err(ImpactError::NoConvergence { what: "the growth of the return map" });
-        }
-        if size == 0.0 {
-            return Ok(Growth { rate: 0.0, spread: 0.0, error: 0.0 });
-        }
-        if l >= skip {
-            logarithms.push(size.ln());
+        map.fly_all();
+        for (w, size) in map.normalise().into_iter().enumerate() {
+            if !size.is_finite() {
+                return Err(ImpactError::NoConvergence { what: "the growth of the return map" });
+            }
+            vanished[w] |= size == 0.0;
+            if l >= skip {
+                logarithms[w].push(size.ln());
+            }
         }
     }
-    let full = weighted_mean(&logarithms);
-    let part = |sixths: [usize; 2]| {
-        let [from, to] = sixths.map(|k| k * logarithms.len() / 6);
-        weighted_mean(logarithms.get(from..to).unwrap_or_default())
-    };
-    let change = |found: f64| (found - full).abs();
-    let unsettled = [[0, 4], [1, 5], [2, 6]].map(part).map(change).into_iter().fold(0.0, f64::max);
-    let rate = full.exp();
-    let spread = (part([0, 3]).exp() - part([3, 6]).exp()).abs();
-    Ok(Growth { rate, spread, error: 2.0 * rate * unsettled })
+    let none = Growth { rate: 0.0, spread: 0.0, error: 0.0 };
+    let growth = |w: usize| if vanished[w] { none } else { Growth::of(&logarithms[w]) };
+    Ok(std::array::from_fn(growth))
 }
 
 /// The mean with the weights e^(-1/(t (1 - t))), 0 < t < 1: of a quasiperiodic sequence (a complex pair)

@@ -5,7 +5,7 @@
 //! interval; exactly one does. These verdicts are predictions, not the stability of the delayed
 //! system: see [`crate::characteristic`].
 
-use crate::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
+use crate::equivalent::{Drive, EquivalentOrbit, equivalent_orbit, equivalent_orbit_here};
 use crate::error::ImpactError;
 use crate::flow::{Flow, Rates};
 use crate::map::{ImpactMap, Polynomial};
@@ -127,7 +127,9 @@ impl<S: Real> Ground<S> {
     pub(crate) fn map(&self, flow: &Flow<S>) -> Result<ImpactMap<S>, ImpactError> {
         flow.validate()?;
         Ok(match self {
-            Self::Own(drive) => ImpactMap::of_orbit(flow, drive, &equivalent_orbit(flow, drive)?),
+            Self::Own(drive) => {
+                ImpactMap::of_orbit(flow, drive, &equivalent_orbit_here(flow, drive)?)
+            }
             Self::Literal(drive, form) => form.polynomial(flow, drive).map(),
             Self::True(drive, saltation) => ImpactMap::from_saltation(flow, drive, saltation),
         })

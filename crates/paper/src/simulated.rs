@@ -5,8 +5,9 @@ use super::{Reader, Row, Section, Table, plain};
 use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_simulate::{
-    Doubles, Integrator, LyapunovSettings, PoincareMap, Quantity, Report, Segment, Settings,
-    System, largest_lyapunov_exponent, zero_one,
+    DiagramSettings, Doubles, Integrator, LyapunovExponent, LyapunovSettings, Model, Point,
+    Quantity, Report, Segment, Settings, Sweep, System, diagram, go_on, largest_lyapunov_exponents,
+    zero_one,
 };
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -38,42 +39,69 @@ struct Orbit {
     growth: f64,
 }
 
-fn compile(gamma: &str, linearised: bool) -> Result<System<Doubles>, Error> {
-    let mut parameters = parameters()?;
-    parameters.set("gamma", Quantity::parse(gamma).ok_or(Error::NoValue)?);
-    let model = model()?;
-    let model = if linearised { model.linearised() } else { model };
-    Ok(model.compile(Doubles, &parameters)?)
+/// The systems of all orbits.
+fn compile(model: &Model) -> Result<Vec<System<Doubles>>, Error> {
+    let system = |gamma| {
+        let mut parameters = parameters()?;
+        parameters.set("gamma", number(gamma)?);
+        Ok(model.compile(Doubles, &parameters)?)
+    };
+    GAMMAS.into_iter().map(system).collect()
+}
+
+fn number(gamma: &str) -> Result<Quantity, Error> {
+    Quantity::parse(gamma).ok_or(Error::NoValue)
+}
+
+/// The points of the section of every orbit, once per period of the forcing.
+fn sections(transient: u32, kept: u32) -> Result<Vec<Vec<[f64; 2]>>, Error> {
+    let (model, parameters) = (model()?, parameters()?);
+    let values = GAMMAS.into_iter().map(number).collect::<Result<Vec<_>, _>>()?;
+    let sweep = Sweep { model: &model, parameters: &parameters, name: "gamma", values: &values };
+    let settings = DiagramSettings {
+        time: 0.0,
+        start: START.to_vec(),
+        section: lindstedt_simulate::Section::Period(PI),
+        periods: Vec::new(),
+        transient,
+        kept: kept.max(1),
+        follow: false,
+        integration: Settings::for_digits(DIGITS),
+    };
+    let mut found = Vec::new();
+    diagram(&sweep, &Doubles, &settings, 0..ORBITS, &go_on, &mut |column| {
+        let states = |points: Vec<Point<f64>>| {
+            points.iter().map(|point| [point.state[0], point.state[1]]).collect()
+        };
+        found.push(column.points.map(states));
+        ControlFlow::Continue(())
+    });
+    Ok(found.into_iter().collect::<Result<_, _>>()?)
+}
+
+/// The largest Lyapunov exponent of every orbit.
+fn exponents(transient: u32, kept: u32) -> Result<Vec<LyapunovExponent>, Error> {
+    let integration = Settings::for_digits(DIGITS);
+    let averaging = LyapunovSettings { interval: PI, transient, averaged: kept, integration };
+    let systems = compile(&model()?.linearised())?;
+    let systems: Vec<_> = systems.iter().collect();
+    let found = largest_lyapunov_exponents(&systems, &0.0, &START, &averaging, &mut |_| go_on());
+    found.into_iter().map(|exponent| exponent?.ok_or(Error::NoValue)).collect()
 }
 
 impl Orbit {
-    fn follow(gamma: &'static str, transient: u32, kept: u32) -> Result<Self, Error> {
-        let settings = Settings::for_digits(DIGITS);
-        let system = compile(gamma, false)?;
-        let section = lindstedt_simulate::Section::Period(PI);
-        let mut map = PoincareMap::new(&system, &0.0, &START, section, settings)?;
-        let mut points = Vec::new();
-        for n in 0..transient + kept.max(1) {
-            let point = map.next_point()?.ok_or(Error::NoValue)?;
-            if n >= transient {
-                points.push([point.state[0], point.state[1]]);
-            }
-        }
+    fn new(
+        gamma: &'static str,
+        system: &System<Doubles>,
+        points: &[[f64; 2]],
+        exponent: LyapunovExponent,
+    ) -> Result<Self, Error> {
         let first = points.first().copied().ok_or(Error::NoValue)?;
         let near = |p: &[f64; 2]| (p[0] - first[0]).abs() + (p[1] - first[1]).abs() < SAME;
         let period = (1..=LONGEST).find(|n| points.get(*n).is_some_and(near));
-        let (stuck, least, largest) = on_the_way(&system, first, kept.min(WATCHED))?;
+        let watched = u32::try_from(points.len()).map_or(WATCHED, |kept| kept.min(WATCHED));
+        let (stuck, least, largest) = on_the_way(system, first, watched)?;
         let every_second: Vec<f64> = points.iter().step_by(2).map(|p| p[0]).collect();
-        let integration = settings;
-        let averaging = LyapunovSettings { interval: PI, transient, averaged: kept, integration };
-        let exponent = largest_lyapunov_exponent(
-            &compile(gamma, true)?,
-            &0.0,
-            &START,
-            &averaging,
-            &mut |_| ControlFlow::Continue(()),
-        )?;
-        let exponent = exponent.ok_or(Error::NoValue)?;
         Ok(Self {
             gamma,
             period,
@@ -168,8 +196,14 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
             return Ok(false);
         }
     }
-    let follow = |gamma| Orbit::follow(gamma, transient, kept);
-    let orbits: Vec<Orbit> = GAMMAS.into_par_iter().map(follow).collect::<Result<_, _>>()?;
+    let (points, exponents) =
+        rayon::join(|| sections(transient, kept), || exponents(transient, kept));
+    let (points, exponents, systems) = (points?, exponents?, compile(&model()?)?);
+    let parts = GAMMAS.into_par_iter().zip(systems).zip(points).zip(exponents);
+    let orbit = |(((gamma, system), points), exponent): (((_, _), Vec<_>), _)| {
+        Orbit::new(gamma, &system, &points, exponent)
+    };
+    let orbits: Vec<Orbit> = parts.map(orbit).collect::<Result<_, _>>()?;
     let [periodic, doubled, slight, wells] = &orbits[..] else { return Err(Error::NoValue) };
     let watched = kept.min(WATCHED);
     section.rows.extend(periodic_rows(periodic, doubled));

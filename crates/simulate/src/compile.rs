@@ -62,6 +62,8 @@ impl<'a, R: Real> Compiler<'a, R> {
                 curved: Vec::new(),
                 needed: Vec::new(),
                 first: Vec::new(),
+                controls: Vec::new(),
+                controlled: Default::default(),
                 steps: Vec::new(),
                 constants: Vec::new(),
             },

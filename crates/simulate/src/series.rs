@@ -109,6 +109,14 @@ impl<R: Real> Series<R> {
         system.tape.level(&system.real, &mut self.rows, n, &mut moment);
     }
 
+    /// The same after a control alone has changed.
+    fn level_again(&mut self, system: &System<R>, time: &R::Element, phase: &Phase, n: usize) {
+        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
+        let mut moment = Moment { time, modes: &phase.modes, sum, scratch };
+        let steps = system.tape.behind(n);
+        system.tape.run(steps, &system.real, &mut self.rows, n, &mut moment);
+    }
+
     /// x_{n+1} = f_n/(n+1).
     fn states(&mut self, system: &System<R>, phase: &Phase, n: usize) {
         let real = &system.real;
@@ -132,38 +140,37 @@ impl<R: Real> Series<R> {
         n: usize,
         value: &R::Element,
     ) {
-        for (index, op) in system.tape.ops.iter().enumerate() {
-            if let Op::Control { switch: s, part: p } = *op
-                && s == switch
-                && part.is_none_or(|part| part == p)
-            {
-                let row = system.tape.states + index;
-                system.real.set(self.rows.at_mut(row, n), value);
+        for [row, s, p] in &system.tape.controls {
+            if *s == switch && part.is_none_or(|part| part == *p) {
+                system.real.set(self.rows.at_mut(*row, n), value);
             }
         }
     }
 
-    /// h_{n+1} of the switch (part 0) or of its derivative in a direction, for the controls set.
+    /// h_{n+1} of the switch (part 0) and of its derivatives in the directions, for the controls set and level n found.
     fn constraint(
         &mut self,
         system: &System<R>,
         time: &R::Element,
         phase: &Phase,
-        (switch, part, n): (usize, usize, usize),
-    ) -> R::Element {
-        self.level(system, time, phase, n);
+        (switch, n): (usize, usize),
+    ) {
         self.states(system, phase, n);
+        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
+        let mut moment = Moment { time, modes: &phase.modes, sum, scratch };
+        for index in &system.switches[switch].cone {
+            let (tape, real) = (&system.tape, &system.real);
+            tape.operation(real, &mut self.rows, *index, n + 1, &mut moment);
+        }
+    }
+
+    /// One part of it.
+    fn constrained(&self, system: &System<R>, switch: usize, part: usize, n: usize) -> R::Element {
         let switch = &system.switches[switch];
         let row = match part.checked_sub(1) {
             None => Some(switch.row),
             Some(direction) => switch.tangents[direction],
         };
-        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
-        let mut moment = Moment { time, modes: &phase.modes, sum, scratch };
-        for index in &switch.cone {
-            let (tape, real) = (&system.tape, &system.real);
-            tape.operation(real, &mut self.rows, *index, n + 1, &mut moment);
-        }
         row.map_or_else(|| system.real.zero(), |row| self.rows.at(row, n + 1).clone())
     }
 
@@ -179,7 +186,9 @@ impl<R: Real> Series<R> {
         let mut h = [0.0, 1.0, -1.0].map(|u| {
             self.set_control(system, switch, None, 0, &real.zero());
             self.set_control(system, switch, Some(0), 0, &real.double(u));
-            self.constraint(system, time, phase, (switch, 0, 0))
+            self.level(system, time, phase, 0);
+            self.constraint(system, time, phase, (switch, 0));
+            self.constrained(system, switch, 0, 0)
         });
         let slope = real.difference(&h[1], &h[0]);
         let other = real.difference(&h[0], &h[2]);
@@ -205,13 +214,21 @@ impl<R: Real> Series<R> {
     ) {
         let real = &system.real;
         self.set_control(system, switch, None, n, &real.zero());
-        for part in 0..=system.directions() {
-            let h = self.constraint(system, time, phase, (switch, part, n));
-            let mut u = real.quotient(&h, sensitivity);
-            real.times_integer(&mut u, -(n as i32 + 1));
-            self.set_control(system, switch, Some(part), n, &u);
-        }
         self.level(system, time, phase, n);
+        // That of the motion first; the directions read it, and not each other.
+        for parts in [0..=0, 1..=system.directions()] {
+            if parts.is_empty() {
+                continue;
+            }
+            self.constraint(system, time, phase, (switch, n));
+            for part in parts {
+                let h = self.constrained(system, switch, part, n);
+                let mut u = real.quotient(&h, sensitivity);
+                real.times_integer(&mut u, -(n as i32 + 1));
+                self.set_control(system, switch, Some(part), n, &u);
+            }
+            self.level_again(system, time, phase, n);
+        }
         self.states(system, phase, n);
     }
 
@@ -277,8 +294,7 @@ impl<R: Real> Series<R> {
             return false;
         }
         let n = system.variables;
-        let scale =
-            self.norm(real, 0..n, 0).max(self.norm(real, 0..n, 1) + real.log2(h));
+        let scale = self.norm(real, 0..n, 0).max(self.norm(real, 0..n, 1) + real.log2(h));
         // The derivative's tail is p times that of the series.
         let factor = (self.order as f64).log2() + 3.0;
         if worst + real.log2(h) <= log2_tolerance + factor + scale {

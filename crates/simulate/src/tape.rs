@@ -90,6 +90,10 @@ pub(crate) struct Tape<E> {
     /// What the first two levels do, and the others: sums of one degree in one pass.
     pub(crate) first: Vec<Step<E>>,
     pub(crate) steps: Vec<Step<E>>,
+    /// The rows of the controls: row, switch, part.
+    pub(crate) controls: Vec<[usize; 3]>,
+    /// Those of both that a control changes within its level.
+    pub(crate) controlled: [Vec<Step<E>>; 2],
     /// The rows that are read from outside.
     pub(crate) needed: Vec<usize>,
     pub(crate) constants: Vec<E>,
@@ -148,7 +152,20 @@ impl<E: Clone> Tape<E> {
         moment: &mut Moment<'_, R>,
     ) {
         // Rows start as zeros: where nothing is written they remain so.
-        for step in if n < 2 { &self.first } else { &self.steps } {
+        self.run(if n < 2 { &self.first } else { &self.steps }, real, rows, n, moment);
+    }
+
+    /// Some steps of level `n`.
+    #[inline(always)]
+    pub(crate) fn run<R: Arithmetic<Element = E>>(
+        &self,
+        steps: &[Step<E>],
+        real: &R,
+        rows: &mut Rows<E>,
+        n: usize,
+        moment: &mut Moment<'_, R>,
+    ) {
+        for step in steps {
             match step {
                 Step::Operation(index) => self.operation(real, rows, *index, n, moment),
                 Step::Sum(row, sum) => {
@@ -165,7 +182,30 @@ impl<E: Clone> Tape<E> {
         self.curved = self.live.iter().copied().filter(|index| !self.affine[*index]).collect();
         self.first = self.live.iter().map(|index| Step::Operation(*index)).collect();
         self.steps = steps(real, self, &needed);
+        self.controlled = self.behind_controls();
+        let control = |(op, row)| match op {
+            &Op::Control { switch, part } => Some([row, switch, part]),
+            _ => None,
+        };
+        self.controls = self.ops.iter().zip(self.states..).filter_map(control).collect();
         self.needed = needed;
+    }
+
+    /// The steps of level `n` whose results a new coefficient `n` of a control changes.
+    pub(crate) fn behind(&self, n: usize) -> &[Step<E>] {
+        &self.controlled[usize::from(n >= 2)]
+    }
+
+    fn behind_controls(&self) -> [Vec<Step<E>>; 2] {
+        let mut behind = vec![false; self.rows()];
+        for (index, op) in self.ops.iter().enumerate() {
+            let reads = op.operands().into_iter().flatten().any(|row| behind[row]);
+            behind[self.states + index] = reads || matches!(op, Op::Control { .. });
+        }
+        [&self.first, &self.steps].map(|steps| {
+            let changed = |step: &&Step<E>| behind[step.row(self.states)];
+            steps.iter().filter(changed).cloned().collect()
+        })
     }
 
     /// The tape of several ones that differ in their constants alone, side by side; nothing for others.
@@ -186,6 +226,8 @@ impl<E: Clone> Tape<E> {
             curved: Vec::new(),
             first: Vec::new(),
             steps: Vec::new(),
+            controls: Vec::new(),
+            controlled: Default::default(),
             needed: Vec::new(),
             constants: (0..first.constants.len()).map(join).collect(),
         };
