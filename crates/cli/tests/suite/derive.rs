@@ -287,21 +287,24 @@ fn frequencies_in_multiples_of_a_symbol_or_a_root_are_shown_so() {
     assert_eq!((&first["im"], &first["powers"]["sqrt(2)"]), (&"3/4".into(), &1.into()));
 }
 
-/// (mu^2 + (sigma - 3 a^2/(8 omega_0))^2) a^2 = (F/(2 omega_0))^2 with omega_0 = sqrt(2) and mu = 1/2; the orbit in time has the
-/// error of the orders left out.
+/// (mu^2 + (sigma - 3 a^2/(8 omega_0))^2) a^2 = (F/(2 omega_0))^2 with omega_0 = sqrt(2) and mu = 1/2, sigma as a parameter and
+/// as what a frequency given beside the resonance is off by; the orbit in time has the error of the orders left out.
 #[test]
 fn a_root_has_its_value_in_responses_and_in_time() {
-    let equation = "x'' + 2*x + eps*(x' + x^3) = eps*F*cos((sqrt(2) + eps*sigma)*t)";
-    let set = ["--set", "F=1", "--set", "sigma=1/4", "--order", "1"];
-    let found = json(&[&["respond", equation, "--set", "eps=1/10"], &set[..]].concat());
-    let a: f64 = found["states"][0]["list"][0]["amplitudes"][0]["decimal"]
-        .as_str()
-        .unwrap()
-        .parse()
-        .unwrap();
-    let off = 0.25 - 3.0 * a * a / (8.0 * 2f64.sqrt());
-    assert!(((0.25 + off * off) * a * a - 1.0 / 8.0).abs() < 1e-12, "{a}");
-    let judged = text(&[&["verify", equation], &set[..]].concat());
+    let equation = |rate: &str| format!("x'' + 2*x + eps*(x' + x^3) = eps*F*cos(({rate})*t)");
+    let (written, beside) = (equation("sqrt(2) + eps*sigma"), equation("11/10*sqrt(2)"));
+    let set = ["--set", "F=1", "--order", "1"];
+    let detuned = [&set[..], &["--set", "sigma=1/4"]].concat();
+    let cases = [(&written, &detuned[..], 0.25), (&beside, &set[..], 0.2 * 2f64.sqrt())];
+    for (equation, set, sigma) in cases {
+        let found = json(&[&["respond", equation, "--set", "eps=1/2"], set].concat());
+        let list = found["states"][0]["list"].as_array().unwrap();
+        assert_eq!(list.len(), 1);
+        let a: f64 = list[0]["amplitudes"][0]["decimal"].as_str().unwrap().parse().unwrap();
+        let off = sigma - 3.0 * a * a / (8.0 * 2f64.sqrt());
+        assert!(((0.25 + off * off) * a * a - 1.0 / 8.0).abs() < 1e-12, "{equation}: {a}");
+    }
+    let judged = text(&[&["verify", &written], &detuned[..]].concat());
     assert!(judged.contains("agrees: observed order 1.99"), "{judged}");
 }
 
