@@ -215,10 +215,56 @@ fn refusals_of_irrational_linear_parts_are_true() {
     // The golden ratio and its inverse differ by 1.
     let golden = refused(&["derive", "x'' + 2*x - y + eps*x*cos(t); y'' + y - x", "--order", "1"]);
     assert!(golden.contains("no --digits decide it where it is zero"), "{golden}");
-    let same = refused(&["derive", "x'' + 2*x + eps*x^3 = eps*F*cos(sqrt(2)*t)"]);
-    assert!(same.contains("irrational number") && same.contains("tau = sqrt(2)*t"), "{same}");
-    let symbol = refused(&["derive", "x'' + omega0^2*x + eps*x^3 = eps*F*cos(omega0*t)"]);
-    assert!(symbol.contains("tau = omega0*t"), "{symbol}");
+    let other = refused(&["derive", "x'' + 2*x + eps*x^3 = eps*F*cos(sqrt(3)*t)"]);
+    assert!(other.contains("irrational number") && other.contains("a fraction near it"), "{other}");
+}
+
+/// What is assumed of a symbol omega0 is said, in every form of the answer it stands beside the numbers, and a frequency given
+/// beside a resonance is detuned as a number is.
+#[test]
+fn frequencies_in_multiples_of_a_symbol_or_a_root_are_shown_so() {
+    let damped = "x'' + omega0^2*x + eps*x^3";
+    let found = text(&["derive", &format!("{damped} = eps*F*cos(11/10*omega0*t)"), "--order", "1"]);
+    for line in [
+        "eta' = omega0 + eps*sigma",
+        "Without a value, and positive: omega0",
+        "sigma = (11/10*omega0 - omega0)/eps",
+    ] {
+        assert!(found.contains(line), "{line}: {found}");
+    }
+    let free =
+        text(&["derive", &format!("{damped} = eps*F*cos((5*omega0 + eps*s)*t)"), "--order", "1"]);
+    assert!(free.contains("a*psi' = omega0*a + eps*(3/8*omega0^(-1)*a^3)"), "{free}");
+    let mode = text(&["derive", damped, "--mode", "1", "--order", "1"]);
+    assert!(mode.contains("nu^2 = omega0^2;") && mode.contains("positive: omega0"), "{mode}");
+    let root = "x'' + 2*x + eps*x^3 = eps*F*cos((3*sqrt(2) + eps*s)*t)";
+    let found = json(&["derive", root, "--order", "1"]);
+    assert_eq!((&found["unit"], &found["frequencies"][0]), (&"sqrt(2)".into(), &"sqrt(2)".into()));
+    assert_eq!((&found["force"], &found["residual"]["zero"]), (&"3*sqrt(2)".into(), &true.into()));
+    // 3/(2 sqrt 2).
+    let first = &found["slow_flow"]["orders"]["1"][0][0];
+    assert_eq!((&first["im"], &first["powers"]["sqrt(2)"]), (&"3/4".into(), &1.into()));
+}
+
+/// (mu^2 + (sigma - 3 a^2/(8 omega_0))^2) a^2 = (F/(2 omega_0))^2 with omega_0 = sqrt(2) and mu = 1/2, sigma as a parameter and
+/// as what a frequency given beside the resonance is off by; the orbit in time has the error of the orders left out.
+#[test]
+fn a_root_has_its_value_in_responses_and_in_time() {
+    let equation = |rate: &str| format!("x'' + 2*x + eps*(x' + x^3) = eps*F*cos(({rate})*t)");
+    let (written, beside) = (equation("sqrt(2) + eps*sigma"), equation("11/10*sqrt(2)"));
+    let set = ["--set", "F=1", "--order", "1"];
+    let detuned = [&set[..], &["--set", "sigma=1/4"]].concat();
+    let cases = [(&written, &detuned[..], 0.25), (&beside, &set[..], 0.2 * 2f64.sqrt())];
+    for (equation, set, sigma) in cases {
+        let found = json(&[&["respond", equation, "--set", "eps=1/2"], set].concat());
+        let list = found["states"][0]["list"].as_array().unwrap();
+        assert_eq!(list.len(), 1);
+        let a: f64 = list[0]["amplitudes"][0]["decimal"].as_str().unwrap().parse().unwrap();
+        let off = sigma - 3.0 * a * a / (8.0 * 2f64.sqrt());
+        assert!(((0.25 + off * off) * a * a - 1.0 / 8.0).abs() < 1e-12, "{equation}: {a}");
+    }
+    let judged = text(&[&["verify", &written], &detuned[..]].concat());
+    assert!(judged.contains("agrees: observed order 1.99"), "{judged}");
 }
 
 /// The same numbers by any name of the unknown.

@@ -282,6 +282,13 @@ const TABLE: &[(i32, &str, &str, &str, &str)] = &[
         "derive \"x'' + 5*x - 4*y + eps*c*x^2; y'' + 5*y - 4*x\" --order 1",
     ),
     (
+        2,
+        "ratio-not-known",
+        "derive \"x'' + omega1^2*x + eps*x*y; y'' + omega2^2*y + eps*x^2\" --order 1",
+        "(2*omega0)^2*y",
+        "derive \"x'' + omega1^2*x + eps*x*y; y'' + (2*omega1)^2*y + eps*x^2\" --order 1",
+    ),
+    (
         3,
         "ratio-not-rational",
         "derive \"x'' + x + eps*x^3 = eps*cos(sqrt(2)*t)\" --order 1",

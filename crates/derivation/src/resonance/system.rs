@@ -253,7 +253,12 @@ impl System {
             other => (other?, None),
         };
         unit.iter().for_each(|unit| unit.scaled(&mut modes.squares));
-        let frequencies = modes.frequencies_nearby()?;
+        let frequencies = modes.frequencies_nearby().map_err(|error| match (error, &symbol) {
+            (ResonanceError::NoOscillation { square }, Some(unit)) => {
+                ResonanceError::NoOscillation { square: format!("{square}*{}^2", unit.name) }
+            }
+            (other, _) => other,
+        })?;
         let squares = modes.squares.clone();
         let mut equations = separated(&prepared.equations, &modes, algebraic.as_ref(), names)?;
         if let Some(unit) = &unit {

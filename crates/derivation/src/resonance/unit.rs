@@ -10,6 +10,7 @@ use super::{ResonanceError, SlowFlow, Terms};
 use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomial, expand};
+use lindstedt_equation::print::Style;
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::amplitudes::AmplitudeTerm;
@@ -41,23 +42,27 @@ impl Unit {
         if let Some(name) = mass.flat_map(Expression::parameters).next() {
             return Err(ResonanceError::Unset { name });
         }
-        let (mut unit, mut number): (Option<String>, Option<Rational>) = (None, None);
-        for (monomial, q) in stiffness.filter_map(expand).flat_map(|all| all.terms) {
-            let mut names = monomial.parameters.into_iter();
-            let Some((name, power)) = names.next() else {
-                number = Some(q);
-                continue;
-            };
-            let first = unit.get_or_insert_with(|| name.clone()).clone();
-            if names.next().is_some() || power != 2 {
-                return Err(ResonanceError::Unset { name });
-            }
-            if first != name {
-                return Err(ResonanceError::NoRatio { first, second: name });
+        let (mut unit, mut number): (Option<String>, Option<String>) = (None, None);
+        for all in stiffness.filter_map(expand) {
+            for (monomial, q) in &all.terms {
+                // Constants such as roots have a place among the parameters.
+                let is_symbol = |(name, _): &(&String, _)| !all.atoms.contains_key(*name);
+                let mut symbols = monomial.parameters.iter().filter(is_symbol);
+                let Some((name, power)) = symbols.next() else {
+                    number = Some(all.tree(monomial, q).print("eps", Style::Text));
+                    continue;
+                };
+                let first = unit.get_or_insert_with(|| name.clone()).clone();
+                if monomial.parameters.len() > 1 || *power != 2 {
+                    return Err(ResonanceError::Unset { name: name.clone() });
+                }
+                if first != *name {
+                    return Err(ResonanceError::NoRatio { first, second: name.clone() });
+                }
             }
         }
         if let (Some(unit), Some(number)) = (&unit, number) {
-            let (first, second) = (number.to_string(), format!("{unit}^2"));
+            let (first, second) = (number, format!("{unit}^2"));
             return Err(ResonanceError::NoRatio { first, second });
         }
         Ok(unit.map(|name| Self { name, square: None }))

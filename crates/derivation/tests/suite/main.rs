@@ -8,3 +8,4 @@ mod limits;
 mod normal_mode;
 mod resonance;
 mod sought;
+mod unit;

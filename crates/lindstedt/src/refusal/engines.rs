@@ -17,6 +17,16 @@ use lindstedt_simulate::SimulateError;
 const AT_RESONANCE: &str =
     "write the frequency at the resonance and the difference as a detuning: eps*sigma*x";
 
+/// What takes a delay where none is taken, or one without a small factor.
+const DELAY: &str = "`lindstedt derive` without --mode and --unknown averages a delay of order eps; of one unknown \
+     `lindstedt simulate` takes it as it is";
+const STRONG_DELAY: &str = "with a factor eps, eps*x(t - T), a delay is averaged; of one unknown `lindstedt derive --unknown \
+     NAME` finds the Hopf points of a parameter, and `lindstedt simulate` takes it as it is";
+
+/// What to do with the irrational frequency of a force.
+const FRACTION: &str =
+    "a fraction near it, with the difference as eps*sigma; `lindstedt simulate` takes it as it is";
+
 /// What to do where a frequency has no value,
 const FREQUENCY: &str = "--set NAME=VALUE, for example 1/10; it stays a symbol where the factors of the linear part are squares of its \
      rational multiples: omega0^2*x, 4*omega0^2*y";
@@ -86,32 +96,18 @@ impl Refusal for ResonanceError {
             Self::NotAForce { .. } | Self::Acceleration { .. } => {
                 (NoAnswer, "no-method", "`lindstedt simulate` takes it")
             }
-            Self::Delay { .. } => (
-                NoAnswer,
-                "no-method",
-                "`lindstedt derive` without --mode and --unknown averages a delay of order eps; of one unknown \
-                 `lindstedt simulate` takes it as it is",
-            ),
-            Self::NotWeaklyNonlinear { term } if term.contains("(t - ") => (
-                NoAnswer,
-                "no-method",
-                "with a factor eps, eps*x(t - T), a delay is averaged; of one unknown `lindstedt derive --unknown NAME` finds the \
-                 Hopf points of a parameter, and `lindstedt simulate` takes it as it is",
-            ),
-            Self::NotWeaklyNonlinear { .. } => (
-                NoAnswer,
-                "no-method",
-                "a factor eps marks the small terms; `lindstedt simulate` takes the equation as it is",
-            ),
+            Self::Delay { .. } => (NoAnswer, "no-method", DELAY),
+            Self::NotWeaklyNonlinear { term } if term.contains("(t - ") => {
+                (NoAnswer, "no-method", STRONG_DELAY)
+            }
+            Self::NotWeaklyNonlinear { .. } => {
+                (NoAnswer, "no-method", "a factor eps marks the small terms")
+            }
             Self::Equations { .. } => {
                 (Usage, "second-unknown", "one equation for every unknown, separated by `;`")
             }
             Self::Unset { .. } => (Usage, "no-value-set", FREQUENCY),
-            Self::IrrationalRate { .. } => (
-                NoAnswer,
-                "ratio-not-rational",
-                "a fraction near it, with the difference as eps*sigma; `lindstedt simulate` takes it as it is",
-            ),
+            Self::IrrationalRate { .. } => (NoAnswer, "ratio-not-rational", FRACTION),
             Self::NoRatio { .. } => (Usage, "ratio-not-known", UNKNOWN_RATIO),
             Self::NotSought { .. } => {
                 (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")

@@ -77,9 +77,6 @@ impl<'a> Subject<'a> {
         let mut slow = asked(&case);
         let mut factor = None;
         let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
-        let is_unit = |slow: &SlowFlow, name: &String| {
-            slow.system.unit.as_ref().is_some_and(|unit| unit.name == *name)
-        };
         let open = |slow: &SlowFlow, name: &String| {
             slow.system.symbols.contains(name) && !independent(slow, name) && !is_unit(slow, name)
         };
@@ -456,6 +453,11 @@ fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
     let Some(name) = slow.system.open_frequency() else { return Ok(()) };
     let problem = oscillator.problem().name.to_string();
     Err(DerivationError::Unset { problem, name: name.clone() }.into())
+}
+
+/// Whether all frequencies are multiples of this name.
+fn is_unit(slow: &SlowFlow, name: &str) -> bool {
+    slow.system.unit.as_ref().is_some_and(|unit| unit.name == name)
 }
 
 fn uncoupled(order: usize) -> Error {

@@ -98,16 +98,16 @@ impl Present for Answer<NormalMode> {
                 }));
             }
         }
-        if let Some(unit) = &mode.unit {
-            page = page.words(positive(unit));
-        }
-        page.words(residual(mode.checked_orders))
+        with_unit(page, mode.unit.as_ref()).words(residual(mode.checked_orders))
     }
 }
 
 /// What is taken of a unit of frequency that is a symbol.
-fn positive(unit: &Unit) -> String {
-    format!("Without a value, and positive: {}, of which the frequencies are multiples.", unit.name)
+fn with_unit(page: Document, unit: Option<&Unit>) -> Document {
+    let Some(Unit { name, square: None, .. }) = unit else { return page };
+    page.words(format!(
+        "Without a value, and positive: {name}, of which the frequencies are multiples."
+    ))
 }
 
 /// What became of the substitution into the equation.
@@ -193,9 +193,7 @@ impl Board<'_> {
                  there is a resonance, and the expansion does not hold."
             ));
         }
-        if let Some(unit) = flow.system.unit.iter().find(|unit| unit.square.is_none()) {
-            page = page.words(positive(unit));
-        }
+        page = with_unit(page, flow.system.unit.as_ref());
         let Some(beside) = &flow.system.beside else { return page };
         let [rate, at] =
             [&beside.rate, &flow.system.force()].map(|rate| flow.print_multiple(rate, Style::Text));
