@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 const BITS: u32 = 300;
 
 /// splitmix64.
-struct Generator(u64);
+pub struct Generator(pub u64);
 
 impl Generator {
-    fn below(&mut self, n: u64) -> u64 {
+    pub fn below(&mut self, n: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

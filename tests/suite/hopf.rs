@@ -315,6 +315,7 @@ fn what_has_no_series_about_rest() {
         ("x' = -a*(exp(x(t - 1)) - 2)", "-2*a does not vanish"),
         ("x' = -a*x(t - 1) + x^30*cos(t)", "depends on t"),
         ("x' = -a*x(t - 1) + abs(x)^3", "-abs(x)^3 has no power series"),
+        ("x' = -a*x(t - 1) + x^2*abs(x + pi - 3)", "has no known sign at x = 0"),
         ("x' = -x(t - 1)*sin(a + x) + x^2", "is no polynomial in the parameter"),
     ];
     for (equation, words) in table {
@@ -328,6 +329,13 @@ fn what_has_no_series_about_rest() {
     let error = open.hopf("a", 4, &Work::default()).err().unwrap();
     assert_eq!(error.code(), "could-not-decide", "{error}");
     assert!(error.to_string().contains("not told from zero"), "{error}");
+    let second = |equation: &str| {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        found(&oscillator, "a", 2).cycle.parameter[2].number.decimal.clone()
+    };
+    let smooth = second("x' = -a*x(t - 1) + x^2*(x + pi)");
+    assert_eq!(second("x' = -a*x(t - 1) + x^2*abs(x + pi)"), smooth);
+    assert_eq!(second("x' = -a*x(t - 1) - x^2*abs(-2*pi - x) + 2*x^3 + 3*pi*x^2"), smooth);
     // The hint followed: the equilibrium ln 2, and the one at pi above.
     let moved = Oscillator::parse("x' = -a*(exp(ln(2) + x(t - 1)) - 2)").unwrap();
     let cycle = found(&moved, "a", 2).cycle;

@@ -28,6 +28,8 @@ pub enum NoSeries {
     Singular(Expression),
     /// This has no power series about rest.
     NotAnalytic(Expression),
+    /// This has one where what it takes abs or sign of is not zero at rest, which is not known.
+    UnknownSign(Expression),
 }
 
 /// The terms up to a total degree in the unknowns, all of which are atoms: the cost follows the terms of that degree, not
@@ -267,15 +269,37 @@ fn known_value(e: Expression) -> Expression {
     }
 }
 
-/// F^(k)(c)/k!; nothing where F has no power series about c.
+/// The sign of a constant of numbers and pi, where all its terms have the same one; nothing for another one.
+fn sign(c: &Expression) -> Option<Ordering> {
+    let common = |list: &[Expression]| {
+        let first = sign(list.first()?)?;
+        list.iter().all(|e| sign(e) == Some(first)).then_some(first)
+    };
+    match c {
+        Expression::Number(q) => Some(q.cmp0()),
+        Expression::Parameter(name) => (name == "pi").then_some(Ordering::Greater),
+        Expression::Sum(list) => common(list),
+        Expression::Product(list) => list.iter().try_fold(Ordering::Greater, |product, e| {
+            Some(match (product, sign(e)?) {
+                (Ordering::Greater, own) => own,
+                (product, Ordering::Greater) => product,
+                (Ordering::Less, Ordering::Less) => Ordering::Greater,
+                _ => Ordering::Equal,
+            })
+        }),
+        Expression::Power(base, _) => sign(base).filter(|s| *s == Ordering::Greater),
+        _ => None,
+    }
+}
+
+/// F^(k)(c)/k!; nothing where F has no power series about c, or none is known.
 fn coefficient(function: Function, c: &Expression, k: u32) -> Option<Expression> {
     let at = |f: Function| known_value(c.clone().apply(f));
     let scaled = |e: Expression, f: Function| {
         let factor = of_function(f, k as usize)?.pop()?;
         Some(Expression::Number(factor) * e)
     };
-    let number = c.as_number();
-    let sign = number.as_ref().map(Rational::cmp0);
+    let sign = sign(c);
     match function {
         Function::Exp => scaled(at(Function::Exp), Function::Exp),
         // sin(c + u) = sin c cos u + cos c sin u.
@@ -401,7 +425,11 @@ impl Operations for Near {
         let terms = self.regular(argument, value, 0)?;
         let (c, u) = self.split(&terms);
         if coefficient(function, &c, 0).is_none() {
-            return self.refuse(NoSeries::NotAnalytic(whole));
+            let unknown = matches!(function, Function::Abs | Function::Sign) && sign(&c).is_none();
+            return self.refuse(match unknown {
+                true => NoSeries::UnknownSign(whole),
+                false => NoSeries::NotAnalytic(whole),
+            });
         }
         // sin z = z (1 - z^2/6 + ...): what divides z divides it.
         if function == Function::Sin && c == Expression::integer(0) {

@@ -139,7 +139,9 @@ impl Refusal for Error {
             Self::Hopf(error) => return error.parts(),
             Self::Recognise(error) => return error.parts(),
             Self::Orbit(error) => return error.parts(),
-            Self::Classify(ClassifyError::TooManyTerms { .. }) => (Undecided, "too-large", ""),
+            Self::Classify(ClassifyError::TooManyTerms { .. }) => {
+                (Undecided, "too-large", crate::refusal::SHORTER)
+            }
             Self::Classify(_) => (NoAnswer, "no-method", ""),
             Self::Name(error) => return (Usage, "usage", error.known.join(", ")),
             Self::File(error) => {

@@ -62,6 +62,10 @@ pub trait Refusal: fmt::Display {
     }
 }
 
+/// About what is multiplied out to more terms than a fixed number.
+pub(crate) const SHORTER: &str =
+    "lower --order, --set more parameters, or write the equation shorter";
+
 /// What to do about a refusal of which no more is known than its kind and its code.
 ///
 /// ```

@@ -92,6 +92,7 @@ fn series(
             NoSeries::Time => Why::DependsOnTime,
             NoSeries::Singular(_) => Why::SingularAtRest,
             NoSeries::NotAnalytic(_) => Why::NotAnalyticAtRest,
+            NoSeries::UnknownSign(_) => Why::UnknownSignAtRest,
         };
         let kind = std::mem::discriminant(&fault);
         let own = |term: &&Expression| of(term).is_err_and(|e| std::mem::discriminant(&e) == kind);

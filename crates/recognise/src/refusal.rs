@@ -57,6 +57,8 @@ pub enum Why {
     DependsOnTime,
     /// It has no power series in x, x' and their values at earlier times about x = 0.
     NotAnalyticAtRest,
+    /// Abs or sign of what has no known sign at x = 0.
+    UnknownSignAtRest,
     /// It divides by what vanishes at x = 0.
     SingularAtRest,
     /// With others it is not told from zero at x = 0.
@@ -97,6 +99,7 @@ impl fmt::Display for Why {
             Self::NotLinearUnknown => "is not linear in the parameter that is sought",
             Self::DependsOnTime => "depends on t; Hopf points are those of an equilibrium",
             Self::NotAnalyticAtRest => "has no power series in x, x' and their values at earlier times about x = 0, the equilibrium that is looked at",
+            Self::UnknownSignAtRest => "takes abs or sign of what has no known sign at x = 0, the equilibrium that is looked at: give its parameters values, or write it without",
             Self::SingularAtRest => "divides by what vanishes at x = 0, the equilibrium that is looked at",
             Self::RestUndecided => "with the other terms without x is not told from zero at x = 0: write constants that cancel alike",
             Self::NotAtRest => "does not vanish at x = 0, the equilibrium that is looked at",

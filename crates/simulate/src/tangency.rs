@@ -206,17 +206,19 @@ impl Homoclinic<'_> {
         nearest.map(|nearest| nearest.phase).ok_or(SimulateError::NoTangency { value })
     }
 
-    /// The return with the smallest `sign` excess, and that.
+    /// The smallest `sign` excess, and the phases of its minima, the smallest first.
     fn margin(
         &self,
         (value, count, sign): (f64, u32, f64),
         tick: &Tick<'_>,
-    ) -> Result<(f64, Return), SimulateError> {
+    ) -> Result<(f64, Vec<f64>), SimulateError> {
         let returns = self.returns(value, count, tick)?;
-        let least =
-            returns.into_iter().min_by(|a, b| (sign * a.excess).total_cmp(&(sign * b.excess)));
-        let least = least.ok_or(SimulateError::NoTangency { value })?;
-        Ok((sign * least.excess, least))
+        let at = |k: usize| sign * returns[k % returns.len()].excess;
+        let below = |k: &usize| at(*k) <= at(*k + returns.len() - 1) && at(*k) <= at(*k + 1);
+        let mut minima: Vec<usize> = (0..returns.len()).filter(below).collect();
+        minima.sort_by(|a, b| at(*a).total_cmp(&at(*b)));
+        let least = minima.first().ok_or(SimulateError::NoTangency { value })?;
+        Ok((at(*least), minima.iter().map(|k| returns[*k].phase).collect()))
     }
 
     /// The tangency between two values of the parameter, at one of which all of `count` orbits
@@ -247,8 +249,21 @@ impl Homoclinic<'_> {
                 let end = if margin.0 > 0.0 { &mut pure } else { &mut mixed };
                 *end = (middle, margin);
             }
-            let (value, (_, nearer)) = if pure.1.0 < -mixed.1.0 { pure } else { mixed };
-            return self.tangency(value, nearer.phase, tick);
+            let direction = (mixed.0 - pure.0).signum();
+            let (value, (_, phases)) = if pure.1.0 < -mixed.1.0 { pure } else { mixed };
+            // Of extrema that are almost equal the orbits followed do not tell whose tangency is the first.
+            let (mut found, mut failed): (Vec<Tangency>, _) = (Vec::new(), None);
+            for phase in phases.into_iter().take(2) {
+                match self.tangency(value, phase, tick) {
+                    Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
+                    Err(failure) => failed = failed.or(Some(failure)),
+                    Ok(tangency) => found.push(tangency),
+                }
+            }
+            found.retain(|tangency| (low..=high).contains(&tangency.value));
+            let place = |tangency: &Tangency| direction * tangency.value;
+            let first = found.into_iter().min_by(|a, b| place(a).total_cmp(&place(b)));
+            return first.ok_or(failed.unwrap_or(SimulateError::NoTangency { value }));
         }
         Err(SimulateError::NoTangency { value: low })
     }

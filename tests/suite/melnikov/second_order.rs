@@ -45,23 +45,18 @@ fn what_has_none_is_named() {
 }
 
 /// The work of the force has two equal maxima in a period, sin t_0 + 0.67 sin 3 t_0 but for a factor: two tangencies of
-/// different slopes, of which the first is the threshold on either side of eps = 0. The manifolds meet one of them, t -> -t
-/// the other.
+/// different slopes, of which the first is the threshold on either side of eps = 0. The manifolds meet it, also t -> -t.
 #[test]
 fn of_equal_extrema_the_first_counts() {
-    let met = |equation: &str| {
+    for equation in [
+        "x'' - x + x^2 = eps*(cos(t) + 40*cos(3*t) - x' - x'^2)",
+        "x'' - x + x^2 = eps*(x' - x'^2 + cos(t) + 40*cos(3*t))",
+    ] {
         let list = second_order(equation).unwrap();
         let slopes = [Some(&list[0].slope), list[0].slope_below.as_ref()].map(Option::unwrap);
         let [above, below] = slopes.map(|slope| parts(slope).0);
-        assert!(above < below, "{list:?}");
-        let followed = match (&list[0].manifolds, &list[0].not_followed) {
-            (Some(found), _) => parts(&found.slope).0,
-            (None, reason) => reason.as_ref().unwrap().rsplit(' ').next().unwrap().parse().unwrap(),
-        };
-        [above, below, followed]
-    };
-    let one = met("x'' - x + x^2 = eps*(cos(t) + 40*cos(3*t) - x' - x'^2)");
-    let other = met("x'' - x + x^2 = eps*(x' - x'^2 + cos(t) + 40*cos(3*t))");
-    assert!((one[2] - one[1]).abs() < 1e-6, "{one:?}");
-    assert!((other[2] - other[0]).abs() < 1e-6, "{other:?}");
+        assert!(above < below - 1e-3, "{list:?}");
+        let followed = parts(&list[0].manifolds.as_ref().unwrap().slope).0;
+        assert!((followed - above).abs() < 1e-6, "{equation}: {followed}, {above}, {below}");
+    }
 }

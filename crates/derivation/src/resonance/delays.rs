@@ -220,7 +220,7 @@ impl Angles {
     }
 
     /// Terms with the exponents of the constant phases, then those of `symbols` symbols: with those of the cosines and sines
-    /// behind the symbols in their place.
+    /// behind the symbols in their place. All angles are known: those of all terms were read.
     pub(super) fn unfold(&self, terms: &mut Terms, symbols: usize) {
         if self.phases == 0 {
             return;
@@ -243,7 +243,7 @@ impl Angles {
                 let entry = sum.entry([first, own, &wave, rest].concat()).or_default();
                 entry.iter_mut().zip(turned).for_each(|(sum, part)| *sum += part);
             };
-            match self.known.get(&key).copied().unwrap_or(Turned::Quarters(0)) {
+            match self.known[&key] {
                 Turned::Quarters(n) => add(None, sign * n),
                 Turned::By(k) => {
                     add(Some(2 * k), 0);

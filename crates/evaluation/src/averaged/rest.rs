@@ -7,11 +7,12 @@
 //! over the last two orders n that do not vanish of both and what stands before them, t for m = 0: the roots alone follow
 //! late where the terms begin to fall less; orders vanish by symmetry, two in a row by accident
 //! (B_3 = B_4 = 0 for x'' + x + eps (x^2 + x'^2) = 0), and say nothing. The rest of x is the larger of |t_n| q^(N - n) for
-//! these two n, that of the rates p times as much, p = min (4 q/(1 - q), max (1, q/(1 - q))), and t q^(N + 1) where all orders vanish; but a' = 0 to every
+//! these two n, that of the rates 4 q/(1 - q) times as much, and t q^(N + 1) where all orders vanish; but a' = 0 to every
 //! order where the motion can be run backwards. A_n and B_n are judged together: with a delay the complex rate turns from
-//! order to order, and one of them may be small by accident. Of 2000 rates of linear equations with a delay, roots
-//! of the characteristic equation, 2 are further off than estimated (by the roots alone 15), of another 1800 4, none by more than
-//! 2.3 times, and the estimate is 15 times too large in the median. Quotients of one and more are those to a term small by accident. |t_n| is the largest among amplitudes passed through and some below the largest one: a
+//! order to order, and one of them may be small by accident. Of 6306 rates of linear equations with a delay, roots
+//! of the characteristic equation, with terms that fall slowly, 3 are further off than estimated, none by more than 1.9 times, and
+//! the estimate is 9 times too large in the median (with at most q/(1 - q) or 1 times as much 85, 5.4 times and 6); of 4517 with terms
+//! that fall by ten and more none, and 6 times. Quotients of one and more are those to a term small by accident. |t_n| is the largest among amplitudes passed through and some below the largest one: a
 //! polynomial in a has zeros, as A_1 on a limit cycle.
 
 use super::truncated::Truncated;
@@ -136,7 +137,7 @@ impl Rest {
         let sizes = self.sizes(amplitudes);
         let last = last_two(&sizes).map(|(n, size)| size * power(q, self.order - n));
         let rest = match last.reduce(largest) {
-            Some(last) => last * (SAFETY * q / (1.0 - q)).min((q / (1.0 - q)).max(1.0)),
+            Some(last) => last * SAFETY * q / (1.0 - q),
             None => self.frequency * power(q, self.order + 1),
         };
         [if self.is_reversible { 0.0 } else { rest }, rest]

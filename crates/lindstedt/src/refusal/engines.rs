@@ -316,7 +316,7 @@ impl Refusal for lindstedt_recognise::Refusal {
                 (Usage, "no-value-set", "give it under [parameters] or with --set NAME=VALUE")
             }
             Refusal::Periods { .. } => (Usage, "parameter", "k = 1, 2, ..."),
-            Refusal::TooManyTerms { .. } => (Undecided, "too-large", ""),
+            Refusal::TooManyTerms { .. } => (Undecided, "too-large", super::SHORTER),
             Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
                 (NoAnswer, "no-method", FIRST_ORDER)
             }

@@ -108,7 +108,7 @@ impl Balance {
     }
 
     /// Whether no state has its moduli in a cell.
-    fn excludes(&self, cell: &[Interval]) -> bool {
+    pub(super) fn excludes(&self, cell: &[Interval]) -> bool {
         let at: Region = middle(cell).into_iter().map(Interval::point).collect();
         let away: Region = cell.iter().zip(&at).map(|(r, m)| *r - *m).collect();
         let around = Around {

@@ -279,6 +279,55 @@ fn two_modes() {
     assert_eq!(reached, [true; 5]);
 }
 
+/// Flows of two unknowns with random terms and constants that make a given point a state: no box with its moduli is excluded,
+/// though many beside it are.
+#[test]
+fn no_moduli_of_states_are_excluded() {
+    let mut seed = 1u64;
+    let mut random = |n: i64| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as i64 % n
+    };
+    let mut excluded = 0;
+    for _ in 0..500 {
+        let w: Vec<f64> = (0..4).map(|_| (random(33) - 16) as f64 / 16.0).collect();
+        let mut equations: Vec<Vec<ComplexTerm>> = Vec::new();
+        for j in 0..2 {
+            let mut own = [0; 4];
+            own[2 * j] = 1;
+            let mut terms = vec![term(&own, &[], (-random(8), 8), (random(65) - 32, 8))];
+            for _ in 0..3 {
+                let powers: Vec<u32> = (0..4).map(|_| random(3) as u32 / 2).collect();
+                let part = |n: i64| (n - 8, 8);
+                terms.push(term(&powers, &[], part(random(17)), part(random(17))));
+            }
+            equations.push(terms);
+        }
+        let values = Flow::of_complex(&equations, &[]).system(&[]).values(&w);
+        for (j, terms) in equations.iter_mut().enumerate() {
+            let part = |k: usize| -Rational::from_f64(values[2 * j + k]).unwrap();
+            terms.push(ComplexTerm {
+                re: part(0),
+                im: part(1),
+                ..term(&[0; 4], &[], (0, 1), (0, 1))
+            });
+        }
+        let flow = Flow::of_complex(&equations, &[]);
+        let balance = balance::Balance::of(&flow, &[]).unwrap();
+        for width in [0.3, 0.1, 0.03, 0.01, 0.003] {
+            let side = |pair: &[f64]| {
+                let r = pair[0].hypot(pair[1]);
+                Interval::new((r - 0.3 * width).max(0.0), r + 0.7 * width)
+            };
+            let cell: Region = w.chunks(2).map(side).collect();
+            assert!(!balance.excludes(&cell), "{cell:?} {equations:?}");
+            let beside: Region = cell.iter().map(|x| *x + Interval::point(2.0 * width)).collect();
+            excluded += usize::from(balance.excludes(&beside));
+        }
+    }
+    assert!(excluded > 200, "{excluded}");
+}
+
 /// At s = 1 the start decides between the two stable states.
 #[test]
 fn starts_settle_on_different_branches() {
