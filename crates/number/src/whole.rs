@@ -113,6 +113,8 @@ impl Whole {
     /// gcd(g, self) for g >= 0.
     pub fn gcd(&self, g: &mut Integer) {
         match (&self.0, g.to_u64()) {
+            // Often a multiple: one division says so.
+            (Word(n), Some(m)) if m > 0 && n.unsigned_abs().is_multiple_of(m) => {}
             (Word(n), Some(m)) => {
                 let common = gcd(n.unsigned_abs(), m);
                 if common != m {

@@ -10,10 +10,11 @@
 //! of that number, once for all values of the delay, where the derivation has the recurrence of its differential equation.
 
 use super::SlowFlow;
+use super::linear::Affine;
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::residual::polynomial_value;
-use lindstedt_algebra::{AmplitudeAlgebra, LinearParts};
+use lindstedt_algebra::{AmplitudeAlgebra, LinearParts, Ring};
 use lindstedt_series::Series;
 use rug::Rational;
 
@@ -58,9 +59,15 @@ fn substituted<A: AmplitudeAlgebra>(
     let mut all = Vec::new();
     normalisation(algebra, found)?;
     let judge = Judge::new(algebra, found);
-    let (velocity, values) = judge.values(equation, found)?;
-    for (velocity, root) in velocity.iter().zip(&equation.roots) {
-        let residual = judge.rate(velocity).add(algebra, &values[*root]);
+    let residuals = match judge.linear(equation, found)? {
+        Some(residual) => vec![residual],
+        None => {
+            let (velocity, values) = judge.values(equation, found)?;
+            let roots = velocity.iter().zip(&equation.roots);
+            roots.map(|(v, root)| judge.rate(v).add(algebra, &values[*root])).collect()
+        }
+    };
+    for residual in residuals {
         let broken = |c: &A::Element| !algebra.may_vanish(c);
         if let Some(order) = residual.coefficients.iter().position(broken) {
             return Err(ExpandError::Residual { order });
@@ -135,6 +142,24 @@ struct Judge<'a, A: AmplitudeAlgebra> {
     slow: Field<A::Element>,
 }
 
+/// The value of a node, where it is known.
+type Known<'a, A> =
+    dyn Fn(&Node<Element<A>>) -> Result<Option<Series<Element<A>>>, ExpandError> + 'a;
+
+type Values<A> = Vec<Series<Element<A>>>;
+
+type Element<A> = <A as Ring>::Element;
+
+/// The index, the delay and whether it is the rate, of an unknown.
+fn variable<E>(node: &Node<E>) -> Option<(usize, Option<usize>, bool)> {
+    match node {
+        Node::Displacement => Some((0, None, false)),
+        Node::Velocity => Some((0, None, true)),
+        &Node::Unknown { index, velocity, delay } => Some((index, delay, velocity)),
+        _ => None,
+    }
+}
+
 /// A vector field: its components along z_j and along eta_l.
 type Field<E> = [Vec<Series<E>>; 2];
 
@@ -170,31 +195,152 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         let algebra = self.algebra;
         let x: Vec<_> = found.solution.iter().map(|x| Series::truncated(x.clone())).collect();
         let velocity: Vec<_> = x.iter().map(|x| self.rate(x)).collect();
-        let mut values: Vec<Series<A::Element>> = Vec::new();
         let sought = Series::truncated(found.parameter.clone());
         let stretched: Vec<_> = (0..algebra.delays()).map(|delay| self.stretched(delay)).collect();
+        let value = |node: &Node<_>| {
+            if let &Node::Forcing(index) = node {
+                return Ok(Some(Series::polynomial(vec![equation.forcing[index].clone()])));
+            }
+            let Some((index, delay, rate)) = variable(node) else { return Ok(None) };
+            let now = if rate { velocity.get(index) } else { x.get(index) };
+            match (now, delay) {
+                (Some(now), None) => Ok(Some(now.clone())),
+                (Some(now), Some(delay)) => {
+                    let stretched = stretched.get(delay).and_then(Option::as_deref);
+                    self.delayed(now, delay, stretched).map(Some)
+                }
+                (None, None) if !rate => Ok(Some(sought.clone())),
+                (None, _) => Err(unsupported()),
+            }
+        };
+        let values = self.nodes(equation, &value)?;
+        Ok((velocity, values))
+    }
+
+    /// The values of the nodes of a graph: those that `known` has, and the others of them.
+    fn nodes(
+        &self,
+        equation: &Equation<A>,
+        known: &Known<'_, A>,
+    ) -> Result<Values<A>, ExpandError> {
+        let mut values = Vec::new();
         for node in &equation.nodes {
-            let value = match node {
-                Node::Displacement => x[0].clone(),
-                Node::Velocity => velocity[0].clone(),
-                Node::Unknown { index, velocity: false, delay: None } => {
-                    x.get(*index).unwrap_or(&sought).clone()
-                }
-                Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
-                Node::Unknown { index, velocity: late, delay: Some(delay) } => {
-                    let now = if *late { &velocity } else { &x };
-                    let now = now.get(*index).ok_or_else(unsupported)?;
-                    let stretched = stretched.get(*delay).and_then(Option::as_deref);
-                    self.delayed(now, *delay, stretched)?
-                }
-                &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
-                node => {
-                    polynomial_value(algebra, node, &values, self.order).ok_or_else(unsupported)?
-                }
+            let value = match known(node)? {
+                Some(value) => value,
+                None => polynomial_value(self.algebra, node, &values, self.order)
+                    .ok_or_else(unsupported)?,
             };
             values.push(value);
         }
-        Ok((velocity, values))
+        Ok(values)
+    }
+
+    /// The residual of an equation that is linear in its one unknown, x'' + F = 0, where f = h z and x = z + zbar + p
+    /// with a response p to the force: 2 Re(L z) + p'' + F(p) with the characteristic function
+    ///
+    ///   L = lambda^2 + F(1) - F(0),   lambda = i nu + h,
+    ///
+    /// F being taken of x = 1, x' = lambda, x(t - T) = e^(-lambda T) without forces. No amplitude is multiplied.
+    fn linear(
+        &self,
+        equation: &Equation<A>,
+        found: &SlowFlow<A::Element>,
+    ) -> Result<Option<Series<A::Element>>, ExpandError> {
+        let algebra = self.algebra;
+        if Affine::of(algebra, equation, self.order).is_none() || !self.forces_stand() {
+            return Ok(None);
+        }
+        let Some(p) = self.response(found) else { return Ok(None) };
+        let Some(characteristic) = self.characteristic(equation)? else { return Ok(None) };
+        let z = algebra.amplitude(0);
+        let free = characteristic.map(|c| algebra.twice_real(&algebra.mul(c, &z)));
+        let rate = self.rate(&p);
+        let forced = |node: &Node<_>| match (node, variable(node)) {
+            (&Node::Forcing(index), _) => {
+                Ok(Some(Series::polynomial(vec![equation.forcing[index].clone()])))
+            }
+            (_, Some((_, delay, velocity))) => {
+                let p = if velocity { &rate } else { &p };
+                delay.map_or_else(|| Ok(p.clone()), |delay| self.shifted(p, delay)).map(Some)
+            }
+            _ => Ok(None),
+        };
+        let forced = self.rate(&rate).add(algebra, &self.root(equation, &forced)?);
+        Ok(Some(free.add(algebra, &forced)))
+    }
+
+    /// L, where z' is a multiple of z.
+    fn characteristic(
+        &self,
+        equation: &Equation<A>,
+    ) -> Result<Option<Series<A::Element>>, ExpandError> {
+        let algebra = self.algebra;
+        let z = algebra.amplitude(0);
+        let late = |delay| {
+            let turn = algebra.by_amplitude(&algebra.shift(&z, delay)?, 0);
+            Some(self.stretched(delay)?.first()?.map(|c| algebra.mul(c, &turn)))
+        };
+        let late: Option<Vec<_>> = (0..algebra.delays()).map(late).collect();
+        let Some((late, lambda)) = late.zip(self.multiple(0, &self.whole[0][0])) else {
+            return Ok(None);
+        };
+        let still = || Series::polynomial(Vec::new());
+        let factor = |node: &Node<_>| match (node, variable(node)) {
+            (Node::Forcing(_), _) => Ok(Some(still())),
+            (_, Some((_, None, true))) => Ok(Some(lambda.clone())),
+            (_, Some((_, None, false))) => Ok(Some(Series::polynomial(vec![algebra.one()]))),
+            (_, Some((_, Some(delay), rate))) => {
+                let late = late.get(delay).ok_or_else(unsupported)?;
+                let rate = rate.then(|| lambda.mul(algebra, late, self.order));
+                Ok(Some(rate.unwrap_or_else(|| late.clone())))
+            }
+            _ => Ok(None),
+        };
+        let constant = |node: &Node<_>| {
+            let moves = matches!(node, Node::Forcing(_)) || variable(node).is_some();
+            Ok(moves.then(still))
+        };
+        let square = lambda.mul(algebra, &lambda, self.order);
+        let constant = self.root(equation, &constant)?.map(|c| algebra.neg(c));
+        let sum = square.add(algebra, &self.root(equation, &factor)?);
+        Ok(Some(sum.add(algebra, &constant)))
+    }
+
+    /// The value of the first equation; see [`Self::nodes`].
+    fn root(
+        &self,
+        equation: &Equation<A>,
+        known: &Known<'_, A>,
+    ) -> Result<Series<A::Element>, ExpandError> {
+        Ok(self.nodes(equation, known)?.swap_remove(equation.root()))
+    }
+
+    /// x - z - zbar of one unknown, if no amplitude occurs in it.
+    fn response(&self, found: &SlowFlow<A::Element>) -> Option<Series<A::Element>> {
+        let algebra = self.algebra;
+        let mut p = found.solution.first()?.clone();
+        *p.first_mut()? = algebra.sub(p.first()?, &algebra.twice_real(&algebra.amplitude(0)));
+        let free = |f: &A::Element| algebra.is_zero(&algebra.by_amplitude(f, 0));
+        p.iter().all(free).then(|| Series::truncated(p))
+    }
+
+    /// Whether the phases of the forces turn as at order zero.
+    fn forces_stand(&self) -> bool {
+        self.slow[1].iter().flat_map(|rate| &rate.coefficients).all(|c| self.algebra.is_zero(c))
+    }
+
+    /// The constants that z_j is multiplied with in f, if f is that product.
+    fn multiple(&self, j: usize, f: &Series<A::Element>) -> Option<Series<A::Element>> {
+        let algebra = self.algebra;
+        let own = |f| {
+            let (mut parts, rest) = algebra.linear_parts(f)?;
+            let own = parts.get_mut(j).map(|[own, _]| std::mem::replace(own, algebra.zero()));
+            let others = parts.iter().flatten().chain([&rest]).all(|f| algebra.is_zero(f));
+            let own = algebra.as_constant(&own.unwrap_or_else(|| algebra.zero()))?;
+            others.then_some(own)
+        };
+        let own = f.coefficients.iter().map(own).collect::<Option<_>>()?;
+        Some(Series::truncated(own))
     }
 
     /// D f for a real series f.
@@ -231,14 +377,22 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         delay: usize,
         late: Option<&[Series<A::Element>]>,
     ) -> Result<Series<A::Element>, ExpandError> {
-        let algebra = self.algebra;
         let slid = match late.and_then(|late| self.times(f, late)) {
             Some(slid) => slid,
             None => self.slid(f, delay).ok_or_else(unsupported)?,
         };
-        let shifted: Option<Vec<_>> =
-            slid.coefficients.iter().map(|c| algebra.shift(c, delay)).collect();
-        Ok(Series::truncated(shifted.ok_or_else(unsupported)?))
+        self.shifted(&slid, delay)
+    }
+
+    /// exp(-T D_0) f.
+    fn shifted(
+        &self,
+        f: &Series<A::Element>,
+        delay: usize,
+    ) -> Result<Series<A::Element>, ExpandError> {
+        let shifted = f.coefficients.iter().map(|c| self.algebra.shift(c, delay));
+        let shifted = shifted.collect::<Option<_>>().ok_or_else(unsupported)?;
+        Ok(Series::truncated(shifted))
     }
 
     /// exp(-T D') f. Every application of D' raises the order, so the inner sums are short.
@@ -262,22 +416,12 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
     /// exp(-T mu_j), if D' z_j = mu_j z_j with constants mu_j and D' does not turn the forces.
     fn stretched(&self, delay: usize) -> Option<Vec<Series<A::Element>>> {
         let algebra = self.algebra;
-        let [amplitudes, forces] = &self.slow;
-        let still = |rate: &Series<_>| rate.coefficients.iter().all(|c| algebra.is_zero(c));
-        if !forces.iter().all(still) {
+        if !self.forces_stand() {
             return None;
         }
         let time = algebra.neg(&algebra.delay(delay)?);
         let exponential = |(j, rate): (usize, &Series<A::Element>)| {
-            let back = |f| {
-                let (mut parts, rest) = algebra.linear_parts(f)?;
-                let own = parts.get_mut(j).map(|[own, _]| std::mem::replace(own, algebra.zero()));
-                let others = parts.iter().flatten().chain([&rest]).all(|f| algebra.is_zero(f));
-                let own = algebra.as_constant(&own.unwrap_or_else(|| algebra.zero()))?;
-                others.then(|| algebra.mul(&own, &time))
-            };
-            let back: Vec<_> = rate.coefficients.iter().map(back).collect::<Option<_>>()?;
-            let back = Series::truncated(back);
+            let back = self.multiple(j, rate)?.map(|c| algebra.mul(c, &time));
             let one = Series::polynomial(vec![algebra.one()]);
             let step = |sum: Series<_>, i: usize| {
                 let change = back.mul(algebra, &sum, self.order + 1 - i);
@@ -285,7 +429,7 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
             };
             Some((1..=self.order).rev().fold(one.clone(), step))
         };
-        amplitudes.iter().enumerate().map(exponential).collect()
+        self.slow[0].iter().enumerate().map(exponential).collect()
     }
 
     /// A real series with z_j multiplied by `factors`\[j\]; nothing where amplitudes do not stand alone.
@@ -318,8 +462,34 @@ mod tests {
     use crate::compile::compile_system;
     use crate::resonance::resonant;
     use crate::resonance::tests::{Named, algebra, delay_loop};
-    use lindstedt_algebra::Ring;
     use lindstedt_equation::Expression;
+
+    /// Both forms of the residual of a linear equation, of flows that solve it and that do not; of others there is one.
+    #[test]
+    fn a_root_is_put_into_its_characteristic_equation() {
+        let (algebra, order) = (algebra(), 3);
+        let graph =
+            |more| compile_system(&algebra, &[delay_loop(more)], &Named(&algebra), order).unwrap();
+        let equation = graph(Expression::integer(0));
+        let found = resonant(&algebra, &equation, order, &[], &mut |_| true).unwrap();
+        let both = |found: &SlowFlow<_>| {
+            let judge = Judge::new(&algebra, found);
+            let (velocity, values) = judge.values(&equation, found).unwrap();
+            let general = judge.rate(&velocity[0]).add(&algebra, &values[equation.root()]);
+            assert_eq!(judge.linear(&equation, found).unwrap().unwrap(), general);
+            general.coefficients.iter().filter(|c| !algebra.is_zero(c)).count()
+        };
+        assert_eq!(both(&found), 0);
+        let mut wrong = found.clone();
+        wrong.flow[0][2] = algebra.by_time(&algebra.amplitude(0));
+        wrong.solution[0][1] = algebra.one();
+        assert_eq!(both(&wrong), order);
+        let judge = Judge::new(&algebra, &wrong);
+        let x = Expression::DISPLACEMENT;
+        assert_eq!(judge.linear(&graph(x.clone() * x), &wrong), Ok(None));
+        wrong.flow[0][2] = algebra.one();
+        assert_eq!(Judge::new(&algebra, &wrong).linear(&equation, &wrong), Ok(None));
+    }
 
     /// Both forms of exp(-T D') of a linear flow, on what it delays; of others there is one.
     #[test]

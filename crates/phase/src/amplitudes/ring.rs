@@ -4,16 +4,54 @@ use super::words::Word;
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
 use rug::{Integer, Rational};
-use rustc_hash::FxHashMap;
 
 pub(super) type Terms<E> = Vec<Term<E>>;
 
 pub(super) type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
 
-/// Sums of products in progress: places of words in a list.
+/// Sums of products in progress: a list, and where words stand in it.
 struct Sum<E> {
-    places: FxHashMap<Word, usize>,
+    /// One more than the place of a word, 0 where there is none, from where its hash leads: twice as many slots as words.
+    places: Vec<u32>,
     terms: Terms<E>,
+}
+
+impl<E> Sum<E> {
+    fn new() -> Self {
+        Self { places: vec![0; 64], terms: Vec::new() }
+    }
+
+    /// The slot of a word: its own or an empty one.
+    fn slot(&self, word: Word) -> usize {
+        let folded = (word as u64).wrapping_mul(0xf135_7aea_2e62_a9c5) ^ (word >> 64) as u64;
+        let hash = folded.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        let mask = self.places.len() - 1;
+        let mut slot = hash as usize & mask;
+        loop {
+            match self.places[slot].checked_sub(1) {
+                Some(place) if self.terms[place as usize].0 != word => slot = (slot + 1) & mask,
+                _ => return slot,
+            }
+        }
+    }
+
+    /// The coefficient of a word, that of a new one from `zero`.
+    fn coefficient(&mut self, word: Word, zero: impl Fn() -> E) -> &mut [E; 2] {
+        let mut slot = self.slot(word);
+        if self.places[slot] == 0 {
+            if 2 * self.terms.len() >= self.places.len() {
+                self.places = vec![0; 4 * self.places.len()];
+                for place in 0..self.terms.len() {
+                    let slot = self.slot(self.terms[place].0);
+                    self.places[slot] = place as u32 + 1;
+                }
+                slot = self.slot(word);
+            }
+            self.terms.push((word, [zero(), zero()]));
+            self.places[slot] = self.terms.len() as u32;
+        }
+        &mut self.terms[self.places[slot] as usize - 1].1
+    }
 }
 
 impl<S: Scalars> Amplitudes<S> {
@@ -46,12 +84,7 @@ impl<S: Scalars> Amplitudes<S> {
             let minus = scalars.neg(&im);
             let parts = [&re, &im].map(|part| !scalars.is_zero(part));
             for (w, [x, y]) in b {
-                let word = v + w;
-                let place = *sum.places.entry(word).or_insert(sum.terms.len());
-                if place == sum.terms.len() {
-                    sum.terms.push((word, [scalars.zero(), scalars.zero()]));
-                }
-                let Some((_, [real, imaginary])) = sum.terms.get_mut(place) else { continue };
+                let [real, imaginary] = sum.coefficient(v + w, || scalars.zero());
                 if !scalars.is_zero(x) {
                     if parts[0] {
                         scalars.add_product(real, &re, x);
@@ -169,7 +202,7 @@ impl<S: Scalars> Amplitudes<S> {
             d.lcm(&Integer::from(&a.denominator * &b.denominator))
         };
         let mut denominator = pairs().fold(Integer::from(1), lcm);
-        let mut sum = Sum { places: FxHashMap::default(), terms: Vec::new() };
+        let mut sum = Sum::new();
         for (a, b) in pairs() {
             let n = Integer::from(&denominator / &a.denominator) / &b.denominator;
             let (short, long) = if a.terms.len() < b.terms.len() { (a, b) } else { (b, a) };
