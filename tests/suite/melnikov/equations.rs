@@ -300,7 +300,7 @@ fn what_is_refused() {
         ("x'' - x + x^3 = eps*(mu*cos(t) - x')", "periodic force"),
         ("x'' - x + x^3 = eps*(mu^2 - x^2)*x'", "not linear"),
         ("x'' - x + x^3 = eps*(sign(x' - mu) - x^2*x')", "not linear"),
-        ("x'' - mu*x + x^3 = eps*(1 - x^2)*x'", "not linear"),
+        ("x'' - mu*x + x^3 = eps*(1 - x^2)*x'", "no factor of the small parameter"),
         ("x'' - x + x^3 = eps*(mu*x - x^2*x')", "does no work"),
         ("x'' - x + x^3 + x^5/5 = eps*(mu*x'^2 - x^2*x')", "does no work"),
     ] {
