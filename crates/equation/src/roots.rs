@@ -23,10 +23,10 @@ pub(crate) fn rational_square(e: &Expression) -> Option<Rational> {
     let [(monomial, q)] = all.terms.iter().collect::<Vec<_>>()[..] else { return None };
     let root = |(name, power): (&String, &i32)| {
         let Expression::Power(base, n) = all.atoms.get(name)? else { return None };
-        let twice = Rational::from(n.as_number()? * 2) * *power;
+        let twice: Rational = n.as_number()? * 2 * *power;
         let twice = twice.is_integer().then(|| twice.numer().to_i32())??;
         let twice = Some(twice).filter(|n| n.unsigned_abs() <= HIGHEST)?;
-        Some(Rational::from(base.as_number()?.pow(twice)))
+        Some(base.as_number()?.pow(twice))
     };
     monomial.parameters.iter().map(root).try_fold(q.clone().square(), |q, root| Some(q * root?))
 }

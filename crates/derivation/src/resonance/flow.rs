@@ -3,7 +3,6 @@
 use super::delays::Delays;
 use super::potential::potential;
 use super::system::refuse_delays;
-use super::unit::Unit;
 use super::{
     Names, ResonanceError, Room, SlowFlow, System, Terms, refuse_near_miss, sum_of_harmonics,
 };
@@ -99,7 +98,7 @@ impl Job<'_> {
         &self,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<SlowFlow, Error> {
-        let units: Vec<_> = self.system.unit.iter().map(Unit::expression).collect();
+        let units: Vec<_> = self.system.unit.iter().map(|unit| unit.expression()).collect();
         let generators = units.iter().map(|_| Integers.fraction(&1.into())).collect();
         let run = self.run(Integers, (self.rates(generators), &units), &|_| None, observer)?;
         let terms = |f: &_| run.algebra.rational_terms(f).unwrap_or_default();

@@ -22,7 +22,7 @@ pub struct System {
     /// The left sides, x_j'' alone; where there are shapes, of the modes.
     pub equations: Vec<Expression>,
     /// What frequencies and the rates of forces are multiples of; nothing where that is 1.
-    pub unit: Option<Unit>,
+    pub unit: Option<Box<Unit>>,
     /// nu_j; of an irrational one a rational number beside it: within 2^-200, in a flow within its radius
     /// ([`Enclosed`](super::Enclosed)).
     pub frequencies: Vec<Rational>,
@@ -271,7 +271,7 @@ impl System {
         symbols.retain(|name| !prepared.independent.contains(name) && !is_unit(name));
         let system = Self {
             equations,
-            unit,
+            unit: unit.map(Box::new),
             frequencies,
             squares,
             forces: prepared.forces,

@@ -102,7 +102,7 @@ impl Unit {
     pub(super) fn named(&self, e: &Expression) -> Expression {
         e.map(&|e| {
             let Expression::Power(base, n) = e else { return None };
-            let twice = Rational::from(n.as_number()? * 2);
+            let twice = n.as_number()? * 2u32;
             let base = base.as_number().filter(|base| *base > 0)?;
             let odd = twice.is_integer() && twice.numer().is_odd();
             let whole = odd.then(|| (twice.numer() - Integer::from(1)).to_i32())?? / 2;

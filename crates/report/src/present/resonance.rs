@@ -193,7 +193,7 @@ impl Board<'_> {
                  there is a resonance, and the expansion does not hold."
             ));
         }
-        page = with_unit(page, flow.system.unit.as_ref());
+        page = with_unit(page, flow.system.unit.as_deref());
         let Some(beside) = &flow.system.beside else { return page };
         let [rate, at] =
             [&beside.rate, &flow.system.force()].map(|rate| flow.print_multiple(rate, Style::Text));
