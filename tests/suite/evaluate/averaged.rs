@@ -132,11 +132,7 @@ fn rates_with_a_delay_against_the_characteristic_root() {
                 let Some(found) = found else { continue };
                 let Some(error) = &found.error else { continue };
                 let [value, error] = [&found.decimal, error].map(|x| x.parse::<f64>().unwrap());
-                // An estimate: two of the forty are too small by a tenth.
-                assert!(
-                    (value - truth).abs() <= 1.25 * error,
-                    "{set:?}, order {order}: {found}, {truth}"
-                );
+                assert!((value - truth).abs() <= error, "{set:?}, order {order}: {found}, {truth}");
                 known += 1;
             }
         }
@@ -182,7 +178,7 @@ fn characteristic_root([a, b, c, d, delay]: [f64; 5], eps: f64) -> Complex {
 /// fall less and less from order to order; and the estimates are not much too large.
 #[test]
 fn rates_of_random_equations_with_a_delay() {
-    let mut random = crate::estimates::Generator(5);
+    let mut random = crate::estimates::Generator(6);
     let mut ratios = Vec::new();
     for _ in 0..100 {
         let mut twelfths = || random.below(25) as i64 - 12;
@@ -214,7 +210,7 @@ fn rates_of_random_equations_with_a_delay() {
     ratios.sort_by(f64::total_cmp);
     let median = ratios[ratios.len() / 2];
     println!("{} rates, the smallest ratio {}, the median {median}", ratios.len(), ratios[0]);
-    assert!(ratios.len() > 120 && median < 12.0, "{} {median}", ratios.len());
+    assert!(ratios.len() > 120 && median < 4.0, "{} {median}", ratios.len());
 }
 
 /// All limit cycles of averaged equations against proved orbits: amplitude of the first harmonic, frequency and Floquet

@@ -43,6 +43,9 @@ pub struct Tentative {
     pub before: Float,
     /// By what the error falls from one order to the next, at most 1.
     pub ratio: f64,
+    /// The largest distance from the neighbours in the table of approximants, where they were looked at: two of the same order, with a
+    /// denominator of one degree more and less, and the last two before.
+    pub beside: Option<Float>,
 }
 
 impl Tentative {
@@ -51,7 +54,8 @@ impl Tentative {
     pub(super) fn scaled(mut self, factor: &Float) -> Self {
         let size = Float::with_val(53, factor.abs_ref());
         self.before *= factor;
-        self.error *= size;
+        self.error *= &size;
+        self.beside = self.beside.map(|beside| beside * size);
         self
     }
 }
@@ -156,7 +160,7 @@ pub(super) fn tentative(values: &[Float], number: usize) -> Option<Tentative> {
     let error = Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio);
     let near = before.get(before.len() - 2..)?;
     let error = error.max(&spread(near, value)?);
-    Some(Tentative { error, before: before.last()?.clone(), ratio })
+    Some(Tentative { error, before: before.last()?.clone(), ratio, beside: None })
 }
 
 /// The second judgment of [`settle`]; nothing with fewer than eight values before the last one.

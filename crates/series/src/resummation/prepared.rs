@@ -70,7 +70,13 @@ impl Sample {
         let way = match method {
             Method::PartialSum => Way::Series,
             Method::Uniform => Way::InVariable(series()),
-            _ => Way::Approximants(Staircase::new(&series(), self.bits, stop)?),
+            _ => {
+                let stairs = Staircase::new(&series(), self.bits, stop)?;
+                Way::Approximants(match self.radius == Some(0.0) {
+                    true => stairs.with_neighbours(stop),
+                    false => stairs,
+                })
+            }
         };
         Ok(Prepared { map, way })
     }

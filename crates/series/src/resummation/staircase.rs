@@ -18,6 +18,8 @@ pub(super) struct Staircase {
     coefficients: Vec<Float>,
     bits: u32,
     steps: Vec<(usize, Pade)>,
+    /// Those of the last one's order with a denominator of one degree more and less, where they are wanted.
+    beside: Vec<Pade>,
     /// Whether a spurious pole is taken out of an approximant that it spoils.
     repairs: bool,
     /// Those that were repaired.
@@ -35,13 +37,7 @@ impl Staircase {
         let order = c.len().saturating_sub(1);
         let first = order.saturating_sub(APPROXIMANTS);
         if let Some(steps) = convergents(c, first, bits, stop) {
-            return Ok(Self {
-                coefficients: c.to_vec(),
-                bits,
-                steps,
-                repairs: true,
-                repaired: Once::new(),
-            });
+            return Ok(Self::of(c, bits, steps));
         }
         let mut steps = Vec::new();
         for k in first..=order {
@@ -55,7 +51,21 @@ impl Staircase {
                 steps.push((k, pade));
             }
         }
-        Ok(Self { coefficients: c.to_vec(), bits, steps, repairs: true, repaired: Once::new() })
+        Ok(Self::of(c, bits, steps))
+    }
+
+    fn of(c: &[Float], bits: u32, steps: Vec<(usize, Pade)>) -> Self {
+        let (coefficients, repaired) = (c.to_vec(), Once::new());
+        Self { coefficients, bits, steps, beside: Vec::new(), repairs: true, repaired }
+    }
+
+    /// The same with the neighbours of the last one: O(N^3).
+    pub fn with_neighbours(mut self, stop: &Stop) -> Self {
+        let (l, m) = degrees(self.coefficients.len().saturating_sub(1));
+        let pair = [Some((l + 1, m.wrapping_sub(1))), l.checked_sub(1).map(|l| (l, m + 1))];
+        let pade = |(l, m)| Pade::until(stop, &self.coefficients, l, m, self.bits);
+        self.beside = pair.into_iter().flatten().filter(|_| m > 0).filter_map(pade).collect();
+        self
     }
 
     /// The approximants, the last one last.
@@ -67,7 +77,8 @@ impl Staircase {
     /// points: an error is then larger, where one is spurious.
     pub fn rounded(self, bits: u32) -> Self {
         let steps = self.steps.into_iter().map(|(k, pade)| (k, pade.rounded(bits))).collect();
-        Self { repairs: false, bits, steps, ..self }
+        let beside = self.beside.into_iter().map(|pade| pade.rounded(bits)).collect();
+        Self { repairs: false, bits, steps, beside, ..self }
     }
 
     /// The value at x.
@@ -143,6 +154,9 @@ impl Staircase {
         }
         let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
         let mut tentative = tentative(&list, order);
+        if let Some(tentative) = &mut tentative {
+            tentative.beside = self.gap_to_neighbours(&list, &value);
+        }
         let mut estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
         if jumps.len() >= CUT
             && let Some(jump) = jumps.into_iter().reduce(|a, b| a.max(&b))
@@ -152,6 +166,21 @@ impl Staircase {
         }
         let degrees = Some(pade_degrees);
         Ok(Outcome { estimate, order: used, degrees, tentative, smallest_term: None })
+    }
+}
+
+impl Staircase {
+    /// The largest distance of the last value from its neighbours in the table; nothing unless there are all four.
+    fn gap_to_neighbours(
+        &self,
+        list: &[Float],
+        value: &impl Fn(&Pade) -> Result<(Float, Option<Float>), ResummationError>,
+    ) -> Option<Float> {
+        let [.., far, near, last] = list else { return None };
+        let [more, less] = &self.beside[..] else { return None };
+        let beside = [value(more).ok()?.0, value(less).ok()?.0];
+        let distances = [far, near].into_iter().chain(&beside).map(|v| distance(v, last));
+        distances.reduce(|a, b| a.max(&b))
     }
 }
 
