@@ -63,7 +63,7 @@ impl Staircase {
     pub fn with_neighbours(mut self, stop: &Stop) -> Self {
         let (l, m) = degrees(self.coefficients.len().saturating_sub(1));
         let pair = [Some((l + 1, m.wrapping_sub(1))), l.checked_sub(1).map(|l| (l, m + 1))];
-        let pade = |(l, m)| Pade::until(stop, &self.coefficients, l, m, self.bits);
+        let pade = |(l, m)| Pade::new(&self.coefficients, l, m, self.bits, stop);
         self.beside = pair.into_iter().flatten().filter(|_| m > 0).filter_map(pade).collect();
         self
     }
