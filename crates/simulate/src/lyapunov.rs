@@ -84,18 +84,22 @@ pub fn largest_lyapunov_exponents<R: Real>(
         let flows: Vec<_> = running.iter().map(|one| &one.flow).collect();
         let mut group = R::together(&flows);
         for interval in 1..=settings.transient.saturating_add(settings.averaged) {
-            running.retain(|one| one.ended.is_none());
-            if running.is_empty() || stopped {
+            if running.iter().all(|one| one.ended.is_some()) || stopped {
                 break;
             }
             let mut target = settings.interval.clone();
             let real = &running[0].flow.system.real;
             real.times_integer(&mut target, interval as i32);
             let target = real.sum(time, &target);
+            // Who has ended keeps his lane.
+            let mut told: Vec<_> =
+                running.iter().map(|one| one.ended.is_some().then_some(Ok(()))).collect();
             let mut flows: Vec<_> = running.iter_mut().map(|one| &mut one.flow).collect();
-            let told = advance_all(&mut flows, group.as_deref_mut(), &target);
-            for (one, told) in running.iter_mut().zip(told) {
-                one.hear(told, interval > settings.transient);
+            advance_all(&mut flows, group.as_deref_mut(), &target, &mut told);
+            for (one, told) in running.iter_mut().zip(told.into_iter().flatten()) {
+                if one.ended.is_none() {
+                    one.hear(told, interval > settings.transient);
+                }
             }
             stopped = observer(interval).is_break();
         }
@@ -109,20 +113,21 @@ pub fn largest_lyapunov_exponents<R: Real>(
     all.into_iter().zip(systems).map(exponent).collect()
 }
 
-/// Every integration to the target, side by side where they are a group.
+/// Every integration of which nothing is told yet to the target, side by side where they are a group.
 fn advance_all<R: Real>(
     flows: &mut [&mut Integrator<'_, R>],
-    group: Option<&mut (dyn Together<R> + '_)>,
+    mut group: Option<&mut (dyn Together<R> + '_)>,
     target: &R::Element,
-) -> Vec<Result<(), SimulateError>> {
-    let Some(group) = group else {
-        return flows.iter_mut().map(|flow| flow.advance_while(target, &go_on)).collect();
-    };
-    let mut told = vec![None; flows.len()];
+    told: &mut [Option<Result<(), SimulateError>>],
+) {
     while told.iter().any(Option::is_none) {
+        let Some(group) = group.as_deref_mut() else {
+            let open = flows.iter_mut().zip(told).filter(|(_, told)| told.is_none());
+            return open.for_each(|(flow, told)| *told = Some(flow.advance_while(target, &go_on)));
+        };
         let aim = |told: &Option<_>| told.is_none().then(|| target.clone());
         let mut pairs: Vec<_> =
-            flows.iter_mut().zip(&told).map(|(flow, told)| (&mut **flow, aim(told))).collect();
+            flows.iter_mut().zip(&*told).map(|(flow, told)| (&mut **flow, aim(told))).collect();
         for (told, next) in told.iter_mut().zip(group.round(&mut pairs, &go_on)) {
             match next {
                 Ok(Next::Idle | Next::Moved) => {}
@@ -132,7 +137,6 @@ fn advance_all<R: Real>(
             }
         }
     }
-    told.into_iter().flatten().collect()
 }
 
 /// One solution with its directions.

@@ -280,50 +280,30 @@ impl Homoclinic<'_> {
         phase: f64,
         tick: &Tick<'_>,
     ) -> Result<Tangency, SimulateError> {
-        self.refined(self.near(value, phase, tick)?, tick)
-    }
-
-    /// The tangency for the number of periods after which the orbit is nearest to the saddle.
-    pub(crate) fn near(
-        &self,
-        value: f64,
-        phase: f64,
-        tick: &Tick<'_>,
-    ) -> Result<Near, SimulateError> {
-        let periods = self.arrival(value, phase, tick)?;
-        self.newton((value, phase), periods, None, tick)
-    }
-
-    /// The same for more periods, as long as they bring it nearer, with its error.
-    pub(crate) fn refined(
-        &self,
-        mut near: Near,
-        tick: &Tick<'_>,
-    ) -> Result<Tangency, SimulateError> {
+        let mut periods = self.arrival(value, phase, tick)?;
+        let (mut value, mut phase) = self.newton((value, phase), periods, tick)?;
         let mut error = f64::INFINITY;
         for _ in 0..3 {
-            // G after one period more is larger by the multiplier.
-            let kept = near.derivatives.times(near.saddle.multipliers[0]);
-            let place = (near.value, near.phase);
-            let next = match self.newton(place, near.periods + 1, Some(kept), tick) {
+            let next = match self.newton((value, phase), periods + 1, tick) {
                 Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
                 Err(failure) if error == f64::INFINITY => return Err(failure),
                 Err(_) => break,
                 Ok(next) => next,
             };
-            let change = (next.value - near.value).abs();
+            let change = (next.0 - value).abs();
             if change > error {
                 break;
             }
-            (near, error) = (next, change);
+            (value, phase) = next;
+            (error, periods) = (change, periods + 1);
         }
         // The same orbit, begun one period farther out, or nearer where that is far: how straight the manifold is.
-        let Near { value, phase, periods, saddle, derivatives } = near;
+        let saddle = self.saddle(value, tick)?;
         let nearer =
             saddle.multipliers[0] > ORDINARY && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
         let begun = if nearer { (phase - 1.0, periods + 1) } else { (phase + 1.0, periods - 1) };
-        let other = self.newton((value, begun.0), begun.1, Some(derivatives), tick)?;
-        Ok(Tangency { value, error: error + (other.value - value).abs(), phase, periods })
+        let (other, _) = self.newton((value, begun.0), begun.1, tick)?;
+        Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
     /// After how many periods the orbit that came back is nearest to the saddle.
@@ -408,33 +388,25 @@ impl Homoclinic<'_> {
         Ok(Some(Derivatives { by_value, curvature }))
     }
 
-    /// Newton's method for one number of periods, at first with the derivatives of a neighbour, if there is one.
     fn newton(
         &self,
         start: (f64, f64),
         periods: u32,
-        mut kept: Option<Derivatives>,
         tick: &Tick<'_>,
-    ) -> Result<Near, SimulateError> {
+    ) -> Result<(f64, f64), SimulateError> {
         let (mut value, mut phase) = start;
         let (mut moved, mut before) = (f64::INFINITY, f64::INFINITY);
-        let (mut least, mut vain) = (f64::INFINITY, 0);
         let mut steps = Steps { value: 1e-6, phase: 1e-5 };
         // The saddles of one step lie near those of the step before.
         let mut guess = self.guess;
+        let mut kept: Option<Derivatives> = None;
         for _ in 0..30 {
             let here = self.at(value, guess, tick)?;
             guess = here.1.state;
             let found = self.unstable_component(&here, phase, periods, tick)?;
-            let size = found[0].abs();
-            // Far from every zero Newton's method wanders.
-            vain = if size < least { 0 } else { vain + 1 };
-            least = least.min(size);
-            if vain > VAIN {
-                break;
-            }
             // Four more orbits, where those of the step before do not bring G down.
-            let kept_on = kept.take().filter(|_| size <= FALL * before);
+            let falls = found[0].abs() <= FALL * before;
+            let kept_on = kept.take().filter(|_| falls);
             let fresh = kept_on.is_none();
             let derivatives = match kept_on {
                 Some(derivatives) => derivatives,
@@ -446,7 +418,7 @@ impl Homoclinic<'_> {
                     }
                 }
             };
-            before = size;
+            before = found[0].abs();
             let [dv, dp] = derivatives.step(found);
             if !(dv.is_finite() && dp.is_finite()) {
                 break;
@@ -458,23 +430,13 @@ impl Homoclinic<'_> {
             // Far below the change from one number of periods to the next, or rounding errors.
             let settled = fresh && dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved;
             if dv.abs() < 1e-12 || settled {
-                return Ok(Near { value, phase, periods, saddle: here.1, derivatives });
+                return Ok((value, phase));
             }
             moved = dv.abs();
             kept = Some(derivatives);
         }
         Err(SimulateError::NoTangency { value: start.0 })
     }
-}
-
-/// Where Newton's method ended for one number of periods.
-pub(crate) struct Near {
-    pub(crate) value: f64,
-    pub(crate) phase: f64,
-    periods: u32,
-    /// At its last step, as the derivatives.
-    pub(crate) saddle: Saddle,
-    derivatives: Derivatives,
 }
 
 /// Half widths of differences by the value and by the phase.
@@ -490,14 +452,6 @@ struct Derivatives {
 }
 
 impl Derivatives {
-    /// Those of a multiple of G.
-    fn times(&self, factor: f64) -> Self {
-        Self {
-            by_value: self.by_value.map(|part| part * factor),
-            curvature: self.curvature * factor,
-        }
-    }
-
     /// The step in the value and in the phase to G = dG/dsigma = 0.
     fn step(&self, [g, slope]: [f64; 2]) -> [f64; 2] {
         let determinant = self.by_value[0] * self.curvature - self.by_value[1] * slope;
@@ -509,8 +463,6 @@ impl Derivatives {
 
 /// The derivatives of one step serve the next where |G| falls to this share of what it was.
 const FALL: f64 = 0.1;
-/// So many steps in a row, and no smaller |G| than before them, are no way to a zero.
-const VAIN: u32 = 6;
 /// Farther than this from the saddle the coordinates tell nothing.
 const AWAY: f64 = 0.4;
 /// Near enough to begin with.

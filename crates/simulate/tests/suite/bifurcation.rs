@@ -69,6 +69,19 @@ fn broken_off_and_resumed_it_is_the_same_text() {
     assert!(whole == start + &rest);
 }
 
+/// 0.3 is T0, 0.4 is v*: their recurrences share a constant, those of the others do not.
+#[test]
+fn a_value_that_equals_a_constant_is_a_column_as_others() {
+    let values: Vec<Quantity> = (29..42).map(|n| Rational::from((n, 100)).into()).collect();
+    let settings = settings(2, 2, false);
+    let (whole, _) = lines(&values, &settings, 0, usize::MAX);
+    let alone = |k: usize| {
+        let (text, _) = lines(&values[k..=k], &settings, 0, 1);
+        text.lines().map(|line| format!("{k} {}\n", &line[2..])).collect::<String>()
+    };
+    assert_eq!(whole, (0..values.len()).map(alone).collect::<String>());
+}
+
 #[test]
 fn following_columns_resume_from_the_last_point() {
     let values = gammas(6);

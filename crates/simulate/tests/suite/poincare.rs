@@ -6,7 +6,7 @@ use crate::common::{parameters, stick_slip};
 use lindstedt_equation::{Crossing, Expression, Impact};
 use lindstedt_simulate::{
     Doubles, LyapunovSettings, Model, Parameters, PoincareMap, Section, Settings, SimulateError,
-    Surface, largest_lyapunov_exponent,
+    Surface, largest_lyapunov_exponent, largest_lyapunov_exponents,
 };
 use rug::Rational;
 use std::f64::consts::PI;
@@ -151,4 +151,30 @@ fn exponents_are_numbers_or_errors() {
     // e^1000 is no double.
     let outcome = run(&growth(1_000_000), settings(1.0, 10));
     assert!(matches!(outcome, Err(SimulateError::NotFinite { .. })), "{outcome:?}");
+}
+
+/// One that escapes, and orbits that stick, that double their period and that visit both wells, in lanes and by
+/// themselves; what cannot be followed at all is told so.
+#[test]
+fn exponents_side_by_side_are_those_alone() {
+    let model = stick_slip().linearised();
+    let system = |(b, gamma)| {
+        let given = parameters(&[("a", "1.1"), ("b", b), ("beta", "0"), ("gamma", gamma)]);
+        model.compile(Doubles, &given).unwrap()
+    };
+    let values = [("-0.9", "2"), ("0.9", "0.6"), ("0.9", "0.615"), ("0.9", "1.2")];
+    let systems = values.map(system);
+    let plain = stick_slip().compile(Doubles, &parameters(&[("gamma", "0.6")])).unwrap();
+    let integration = Settings::for_digits(12);
+    let settings = LyapunovSettings { interval: PI, transient: 3, averaged: 20, integration };
+    let start = [0.11, 0.05];
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let list: Vec<_> = systems.iter().chain([&plain]).collect();
+    let found = largest_lyapunov_exponents(&list, &0.0, &start, &settings, go_on);
+    assert!(matches!(found[0], Err(SimulateError::Escape { .. })), "{:?}", found[0]);
+    assert!(matches!(found[4], Err(SimulateError::WrongDimension { .. })));
+    for (system, found) in systems.iter().zip(found) {
+        let alone = largest_lyapunov_exponent(system, &0.0, &start, &settings, go_on);
+        assert_eq!(found, alone);
+    }
 }
