@@ -261,31 +261,55 @@ fn backbone(slow: &SlowFlow, turn: &[Rational], names: &[&str], order: usize) ->
     Flow::of_rows(vec![row], parameters)
 }
 
-/// sum_j nu_j |w_j| and, order by order, eps^n sum_j |f_{j,n} - i k_j sigma_n w_j| with every term taken by its modulus: what the
-/// orders add to w' at a state of these |w_j|, from above. The values are those of the symbols and of eps.
+/// The sum of the moduli of terms at |w_j| and the values of the symbols.
+fn size(slow: &SlowFlow, terms: &Terms, values: &[f64], moduli: &[f64]) -> f64 {
+    let sizes = terms.iter().map(|term| {
+        let scale = term.re.to_f64().hypot(term.im.to_f64());
+        let amplitudes = term.exponents[..2 * slow.unknowns()].chunks_exact(2).zip(moduli);
+        let scale = amplitudes.fold(scale, |p, (e, w)| p * w.powi(e[0] + e[1]));
+        let symbols = term.exponents.iter().skip(slow.first_symbol()).zip(values);
+        symbols.fold(scale, |product, (e, x)| product * x.abs().powi(*e))
+    });
+    sizes.sum()
+}
+
+/// sum_j nu_j |w_j| (in the time of the unit of frequency) and, order by order, eps^n sum_j |f_{j,n} - i sum_l k_{jl} sigma_{l,n} w_j|
+/// with every term taken by its modulus: what the orders add to w' at a state of these |w_j|, from above. The values are those
+/// of the symbols and of eps.
 #[must_use]
-pub fn order_sizes(slow: &SlowFlow, values: &[f64], moduli: &[f64], order: usize) -> Vec<f64> {
-    let unknowns = slow.unknowns();
-    let size = |terms: &Terms| -> f64 {
-        let sizes = terms.iter().map(|term| {
-            let scale = term.re.to_f64().hypot(term.im.to_f64());
-            let amplitudes = term.exponents[..2 * unknowns].chunks_exact(2).zip(moduli);
-            let scale = amplitudes.fold(scale, |p, (e, w)| p * w.powi(e[0] + e[1]));
-            let symbols = term.exponents.iter().skip(slow.first_symbol()).zip(values);
-            symbols.fold(scale, |product, (e, x)| product * x.abs().powi(*e))
-        });
-        sizes.sum()
-    };
+pub fn order_sizes(
+    slow: &SlowFlow,
+    turns: &[Vec<Rational>],
+    values: &[f64],
+    moduli: &[f64],
+    order: usize,
+) -> Vec<f64> {
+    let size = |terms: &Terms| size(slow, terms, values, moduli);
     let free = slow.system.frequencies.iter().zip(moduli).map(|(nu, w)| nu.to_f64() * w).sum();
     let small = values.last().copied().unwrap_or(0.0).abs();
     let power = |n: usize| small.powi(i32::try_from(n).unwrap_or(i32::MAX));
     let flow = |n: usize| -> f64 { slow.flow.iter().filter_map(|f| f.get(n)).map(size).sum() };
+    let turning = |l: usize| -> f64 {
+        let shares = turns.iter().zip(moduli);
+        shares.map(|(k, w)| k.get(l).map_or(0.0, |k| k.to_f64().abs()) * w).sum()
+    };
     let detuning = |n: usize| -> f64 {
-        let rates = slow.detuning.iter().filter_map(|sigma| sigma.get(n - 1));
-        rates.map(size).sum::<f64>() * moduli.iter().sum::<f64>()
+        let rates = slow.detuning.iter().enumerate();
+        rates.filter_map(|(l, sigma)| Some(size(sigma.get(n - 1)?) * turning(l))).sum()
     };
     let orders = (1..=order).map(|n| power(n) * (flow(n) + detuning(n)));
     std::iter::once(free).chain(orders).collect()
+}
+
+/// eps sum_j (|u_{j,1}| + |f_{j,1}|/nu_j) with every term taken by its modulus: by how much w at the start of a motion differs
+/// from its leading order, but for terms of order eps^2.
+#[must_use]
+pub fn start_error(slow: &SlowFlow, values: &[f64], moduli: &[f64]) -> f64 {
+    let first = |list: &Vec<Terms>| list.get(1).map_or(0.0, |it| size(slow, it, values, moduli));
+    let motion: f64 = slow.solution.iter().map(first).sum();
+    let flow = slow.flow.iter().zip(&slow.system.frequencies);
+    let flow: f64 = flow.map(|(list, nu)| first(list) / nu.to_f64()).sum();
+    values.last().copied().unwrap_or(0.0).abs() * (motion + flow)
 }
 
 /// The response of an unknown to the forces at order zero and its rate at eta_l = 0 in the time of the unit of frequency,

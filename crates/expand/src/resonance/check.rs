@@ -8,6 +8,9 @@
 //! powers order by order. The delayed velocity is the velocity shifted so, where the derivation has the rate of change of
 //! the delayed value. Where D' z_j = mu_j z_j with constant mu_j, exp(-T D') multiplies z_j by exp(-T mu_j): Horner's form
 //! of that number, once for all values of the delay, where the derivation has the recurrence of its differential equation.
+//!
+//! Of one linear equation the same is one number, the characteristic function at lambda, and the response apart. That the equation
+//! is linear is read off the graph by the derivation's predicate ([`Affine`]); what it does with it is not shared.
 
 use super::SlowFlow;
 use super::linear::Affine;

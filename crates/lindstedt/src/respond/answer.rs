@@ -171,7 +171,8 @@ pub struct Destination {
     pub state: Option<usize>,
     /// The amplitudes at the end.
     pub amplitudes: Vec<Estimate>,
-    /// Whether starts that differ in one coordinate by eps times the largest go there, too: the start is known to leading order.
+    /// Whether the state is stable and starts that differ in one coordinate by the terms of order eps go there, too: the start is
+    /// known to leading order.
     pub decided: bool,
 }
 

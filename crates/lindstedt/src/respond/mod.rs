@@ -331,17 +331,18 @@ impl Subject<'_> {
             }
         };
         let (fate, state, amplitudes) = goes(&start);
-        // The start is known but for terms of order eps.
-        let moved = self.rate(None) * start.iter().fold(0.0f64, |most, w| most.max(w.abs()));
+        let moved = self.start_error(&start);
         let neighbours = (0..2 * start.len()).map(|k| {
             let mut start = start.clone();
             start[k / 2] += if k % 2 == 0 { moved } else { -moved };
             start
         });
-        let decided = neighbours.into_iter().all(|start| {
-            let (other, place, _) = goes(&start);
-            (other, place) == (fate, state)
-        });
+        let stable = state.is_none_or(|state| states[state].stable == Some(true));
+        let decided = stable
+            && neighbours.into_iter().all(|start| {
+                let (other, place, _) = goes(&start);
+                (other, place) == (fate, state)
+            });
         Ok(Destination { fate, state, amplitudes, decided })
     }
 }

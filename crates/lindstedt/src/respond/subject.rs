@@ -24,7 +24,7 @@ const BESIDE: f64 = 4.0;
 pub(super) type Values = Vec<Option<Value>>;
 
 pub(super) struct Subject<'a> {
-    oscillator: &'a Oscillator,
+    pub(super) oscillator: &'a Oscillator,
     pub(super) work: &'a Work,
     pub(super) order: usize,
     pub(super) slow: SlowFlow,

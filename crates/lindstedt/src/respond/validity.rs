@@ -3,19 +3,27 @@
 use super::Respond;
 use super::answer::Response;
 use super::subject::{Subject, Values, doubles};
-use crate::Remark;
-use lindstedt_evaluation::rotating::order_sizes;
+use crate::{Exact, Remark};
+use lindstedt_evaluation::rotating::{order_sizes, start_error};
+use rug::Rational;
 
 impl Subject<'_> {
     /// The largest ratio of what an order adds to the slow flow at a state to what the order before adds, of those
     /// that add anything.
     pub(super) fn growth(&self, values: &Values, at: &[f64]) -> f64 {
         let moduli: Vec<f64> = at.chunks_exact(2).map(|w| w[0].hypot(w[1])).collect();
-        let mut sizes = order_sizes(&self.slow, &doubles(values), &moduli, self.order);
+        let (turns, values) = (&self.rotating.turns, doubles(values));
+        let mut sizes = order_sizes(&self.slow, turns, &values, &moduli, self.order);
         // Those of free motion are in the time of the unit of frequency.
         sizes[0] *= self.unit().map_or(1.0, |unit| unit.midpoint().to_f64());
         sizes.retain(|size| *size > 0.0);
         sizes.windows(2).map(|pair| pair[1] / pair[0]).fold(0.0, f64::max)
+    }
+
+    /// By how much a start state of the slow flow may be wrong, as it is known to leading order.
+    pub(super) fn start_error(&self, start: &[f64]) -> f64 {
+        let moduli: Vec<f64> = start.chunks_exact(2).map(|w| w[0].hypot(w[1])).collect();
+        start_error(&self.slow, &doubles(&self.values([None, None])), &moduli)
     }
 
     /// Remarks on states at which the orders do not fall, and on a divisor that the small parameter exceeds.
@@ -29,13 +37,11 @@ impl Subject<'_> {
                  times): the oscillator need not have a motion near these; a smaller small parameter or amplitude"
             ))
         });
-        let small = match (&self.small, &question.sweep) {
-            (Some(small), _) => small.to_f64().abs(),
-            (None, Some(axis)) => {
-                axis.values.iter().map(|value| value.to_f64().abs()).fold(0.0, f64::max)
-            }
-            (None, None) => return orders.into_iter().collect(),
-        };
+        let name = &self.oscillator.problem().small;
+        let axes = [&question.sweep, &question.second].into_iter().flatten();
+        let swept = axes.filter(|axis| *axis.name == **name).flat_map(|axis| &axis.values);
+        let small = self.small.iter().map(Rational::to_f64).chain(swept.map(Exact::to_f64));
+        let small = small.fold(0.0, |most: f64, value| most.max(value.abs()));
         let room = |order: usize| small.powi(i32::try_from(order.max(1)).unwrap_or(i32::MAX));
         let nearest = self.slow.nearest.iter().filter(|near| near.order <= self.order);
         let ratios = nearest.map(|near| (near.size.to_f64().abs() / room(near.order), near));
