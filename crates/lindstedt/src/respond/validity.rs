@@ -34,7 +34,7 @@ impl Subject<'_> {
         let orders = (many > 0).then(|| {
             Remark(format!(
                 "at {many} of the states an order of the slow flow adds as much as the order before or more (up to {worst:.1} \
-                 times): the oscillator need not have a motion near these; a smaller small parameter or amplitude"
+                 times): the oscillator need not have a motion near these, the small parameter or the amplitude is too large"
             ))
         });
         let name = &self.oscillator.problem().small;
