@@ -73,6 +73,7 @@ impl Refusal for ExpandError {
                 "damping, delays and nonlinear terms need a factor of the small parameter: eps*x', \
                  eps*x(t - T); `lindstedt simulate` takes the equation as it is",
             ),
+            Self::TurnsBySymbols { .. } => (NoAnswer, "no-expansion", "--set them"),
             Self::NegativeStiffness => (
                 NoAnswer,
                 "no-expansion",
@@ -112,6 +113,12 @@ impl Refusal for ResonanceError {
             Self::NotSought { .. } => {
                 (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
             }
+            Self::NoStart { .. } => (Usage, "no-value-set", "--set NAME=VALUE"),
+            Self::Mixture { .. } | Self::Turns { .. } => (
+                NoAnswer,
+                "no-expansion",
+                "`lindstedt derive` without --unknown has the slow flow of all motions",
+            ),
             Self::SoughtOfSeveral { .. } | Self::ForcedMode => (NoAnswer, "no-method", ""),
             Self::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
             Self::InternalResonance { .. } => {
