@@ -34,6 +34,14 @@ pub(super) fn power(w: &Complex, n: i32) -> Complex {
     (0..n.unsigned_abs()).fold(real(1), |product, _| times(&product, &w))
 }
 
+fn square(c: &Complex) -> Rational {
+    c.iter().map(|part| part.clone().square()).sum()
+}
+
+fn angle(c: &Complex) -> f64 {
+    c[1].to_f64().atan2(c[0].to_f64())
+}
+
 fn square_root(q: &Rational) -> Option<Rational> {
     let exact = |n: &Integer| n.is_perfect_square().then(|| n.clone().sqrt());
     Some(Rational::from((exact(q.numer())?, exact(q.denom())?)))
@@ -43,9 +51,8 @@ fn square_root(q: &Rational) -> Option<Rational> {
 fn root(w: &Complex, n: i32) -> Option<Complex> {
     let common = Integer::from(w[0].denom().lcm_ref(w[1].denom()));
     let r = common.root(n.unsigned_abs());
-    let angle = w[1].to_f64().atan2(w[0].to_f64());
     let candidate = |j: i32| {
-        let angle = (angle + std::f64::consts::TAU * f64::from(j)) / f64::from(n);
+        let angle = (angle(w) + std::f64::consts::TAU * f64::from(j)) / f64::from(n);
         let part =
             |x: f64| Some(Rational::from((Integer::from_f64((x * r.to_f64()).round())?, &r)));
         let z = [part(angle.cos())?, part(angle.sin())?];
@@ -104,6 +111,16 @@ fn mirrored(f: &Polynomial) -> Polynomial {
     f.iter().map(|(key, c)| (mirror(key), conjugate(c))).collect()
 }
 
+/// factor f and, times a sign, its conjugate.
+fn part(f: &Polynomial, factor: &Complex, sign: i32) -> Polynomial {
+    let mut sum = Polynomial::new();
+    for (f, factor) in [(f, factor.clone()), (&mirrored(f), times(factor, &real(sign)))] {
+        let width = f.keys().next().map_or(1, Vec::len);
+        add_product(&mut sum, f, &[(vec![0; width], factor)].into());
+    }
+    sum
+}
+
 /// What finds the start of a motion in the slow flow.
 pub(super) struct Search<'a> {
     /// f_0, f_1, ..., orders up to some order at a time.
@@ -121,64 +138,56 @@ pub(super) struct Search<'a> {
 impl Search<'_> {
     /// The starts, and the order that fixes them.
     pub(super) fn starts(&mut self, order: usize) -> Result<(Vec<Start>, usize), Error> {
-        let symmetric = |n| Ok((Start::symmetric(), n));
-        let width = self.symbols.0;
         let (mut flow, mut values) = (Vec::new(), Vec::<Polynomial>::new());
         for n in 1..=order {
             if flow.len() <= n {
                 flow = (self.flow)((2 * n - 1).min(order))?;
             }
             let Some(terms) = flow.get(1..=n) else { break };
-            let one = Polynomial::from([(vec![0; width], real(1))]);
-            // Powers of p_0 + eps p_1 + ..., p_{n-1} being left out.
-            let mut powers = vec![vec![one]];
-            powers[0].resize(n, Polynomial::new());
-            for j in 0..n {
-                let mut row = vec![Polynomial::new(); n];
-                for (m, sum) in row.iter_mut().enumerate() {
-                    let pairs = values.iter().zip(powers[j][..=m].iter().rev());
-                    pairs.for_each(|(p, rest)| add_product(sum, p, rest));
-                }
-                powers.push(row);
-            }
-            let mut sum = Polynomial::new();
-            for (k, term) in
-                terms.iter().enumerate().flat_map(|(k, f)| f.iter().map(move |t| (k, t)))
-            {
-                let (j, single) = self.on_circle(term);
-                if let Some(power) = powers.get(j) {
-                    add_product(&mut sum, &single, &power[n - 1 - k]);
-                }
-            }
             let slope = terms[0].iter().map(|t| self.on_circle(t)).filter(|(j, _)| *j == 1);
             let slope: Polynomial = slope.flat_map(|(_, single)| single).collect();
             let plain = slope.keys().all(|key| key[1..].iter().all(|e| *e == 0));
             let Some((_, c)) = slope.first_key_value().filter(|_| slope.len() == 1 && plain) else {
-                return symmetric(1);
+                break;
             };
-            let size = c.iter().map(|part| part.clone().square()).sum::<Rational>();
             let mut ratio = Polynomial::new();
-            add_product(&mut ratio, &sum, &mirrored(&slope));
-            let part = |factor: Complex, sign: i32| {
-                let mut sum = Polynomial::new();
-                let constant = |c| Polynomial::from([(vec![0; width], c)]);
-                add_product(&mut sum, &ratio, &constant(factor.clone()));
-                let other = times(&factor, &real(sign));
-                add_product(&mut sum, &mirrored(&ratio), &constant(other));
-                sum
-            };
+            add_product(&mut ratio, &self.without_last(terms, &values), &mirrored(&slope));
             // -Re/|c|^2 and Im.
-            let value = part(real(-(size * 2u32).recip()), 1);
-            let aside = part([0.into(), (-1, 2).into()], -1);
+            let value = part(&ratio, &real(-(square(c) * 2u32).recip()), 1);
+            let aside = part(&ratio, &[0.into(), (-1, 2).into()], -1);
             if !aside.is_empty() {
                 return Ok((self.solved(n, &aside, &value)?, n));
             }
             if value.keys().any(|key| key[0] != 0) {
-                return symmetric(n);
+                break;
             }
             values.push(value);
         }
-        symmetric(1)
+        Ok((Start::symmetric(), 1))
+    }
+
+    /// F_n from f_1, ..., f_n and p_0, ..., p_{n-2}.
+    fn without_last(&self, flow: &[Terms], values: &[Polynomial]) -> Polynomial {
+        let n = flow.len();
+        let mut powers = vec![vec![Polynomial::new(); n]];
+        powers[0][0] = [(vec![0; self.symbols.0], real(1))].into();
+        for j in 0..n {
+            let mut row = vec![Polynomial::new(); n];
+            for (m, sum) in row.iter_mut().enumerate() {
+                let pairs = values.iter().zip(powers[j][..=m].iter().rev());
+                pairs.for_each(|(p, rest)| add_product(sum, p, rest));
+            }
+            powers.push(row);
+        }
+        let mut sum = Polynomial::new();
+        for (k, f) in flow.iter().enumerate() {
+            for (j, single) in f.iter().map(|term| self.on_circle(term)) {
+                if let Some(power) = powers.get(j) {
+                    add_product(&mut sum, &single, &power[n - 1 - k]);
+                }
+            }
+        }
+        sum
     }
 
     /// The power of the parameter in a term, and the rest of it at z = (A/2) v, E = 1.
@@ -199,71 +208,78 @@ impl Search<'_> {
         aside: &Polynomial,
         value: &Polynomial,
     ) -> Result<Vec<Start>, Error> {
-        let harmonics: BTreeSet<i32> =
-            aside.keys().map(|key| key[0].abs()).filter(|k| *k != 0).collect();
-        let mixture = |k: i32, angles: &[f64]| {
+        let harmonics = aside.keys().map(|key| key[0]).filter(|k| *k > 0);
+        let harmonics: Vec<i32> = harmonics.collect::<BTreeSet<_>>().into_iter().collect();
+        let (k, roots) = match harmonics[..] {
+            [] => (1, Roots::None),
+            [k] => (k, quadratic(aside, k)),
+            _ => (1, quarters(aside)),
+        };
+        let mixture = |angles: &[f64]| {
             let (parameter, roots) = ((self.name)(n), decimals(value, k, angles).join(", "));
             Error::from(ResonanceError::Mixture { order: n, parameter, roots })
         };
-        let no_value = || Error::from(ExpandError::NotBalanced { order: n });
-        let at = |k: i32| aside.iter().filter(move |(key, _)| key[0] == k);
-        let (k, roots) = match harmonics.iter().collect::<Vec<_>>()[..] {
-            [] => return Err(no_value()),
-            [&k] if at(0).next().is_none() => {
-                let Some((_, g)) = at(k).next() else { return Err(no_value()) };
-                let real_ratio = |c: &Complex| times(c, &conjugate(g))[1].is_zero();
-                let size = g.iter().map(|part| part.clone().square()).sum::<Rational>();
-                match square_root(&size).filter(|_| at(k).all(|(_, c)| real_ratio(c))) {
-                    Some(size) => {
-                        let u = times(&[0.into(), size.recip()], &conjugate(g));
-                        (k, vec![u.clone(), u.map(|part| -part)])
-                    }
-                    None => return Err(mixture(k, &[])),
-                }
-            }
-            [&k] => {
-                let numbers = aside.keys().all(|key| key[1..].iter().all(|e| *e == 0));
-                let (Some((_, a)), Some((_, g))) = (at(0).next().filter(|_| numbers), at(k).next())
-                else {
-                    return Err(mixture(k, &[]));
-                };
-                let size = g.iter().map(|part| part.clone().square()).sum::<Rational>();
-                let half = Rational::from(&a[0] / -2);
-                let square = size.clone() - half.clone().square();
-                if square < 0 {
-                    return Err(no_value());
-                }
-                let over = times(&conjugate(g), &real(size.recip()));
-                let Some(side) = square_root(&square) else {
-                    let side = square.to_f64().sqrt().atan2(half.to_f64());
-                    let angle = |side| side + over[1].to_f64().atan2(over[0].to_f64());
-                    return Err(mixture(k, &[angle(side), angle(-side)]));
-                };
-                let other = [half.clone(), Rational::from(-&side)];
-                (k, vec![times(&[half, side], &over), times(&other, &over)])
-            }
-            _ => {
-                let quarters = (0..4).map(|j| power(&[0.into(), 1.into()], j));
-                let vanishes = |v: &Complex| {
-                    let mut sum = Polynomial::new();
-                    for (key, c) in aside {
-                        let at = [(key[1..].to_vec(), times(c, &power(v, key[0])))].into();
-                        let one = [(vec![0; key.len() - 1], real(1))].into();
-                        add_product(&mut sum, &at, &one);
-                    }
-                    sum.is_empty()
-                };
-                (1, quarters.filter(vanishes).collect())
-            }
+        let mut roots = match roots {
+            Roots::None => return Err(ExpandError::NotBalanced { order: n }.into()),
+            Roots::Irrational(angles) => return Err(mixture(&angles)),
+            Roots::Rational(roots) => roots,
         };
-        let mut roots = roots;
         // The cosine first.
         roots.sort_by(|a, b| b.cmp(a));
         roots.dedup();
-        let found = roots.iter().map(|u| Start::of(u, k, self.multiples));
-        let found: Option<Vec<_>> = found.collect();
-        let angles: Vec<_> = roots.iter().map(|u| u[1].to_f64().atan2(u[0].to_f64())).collect();
-        found.filter(|list| !list.is_empty()).ok_or_else(|| mixture(k, &angles))
+        let found: Option<_> = roots.iter().map(|u| Start::of(u, k, self.multiples)).collect();
+        found.ok_or_else(|| mixture(&roots.iter().map(angle).collect::<Vec<_>>()))
+    }
+}
+
+/// The roots u = v^k of a + 2 Re(g u) = 0; of irrational ones the angles, where there are no symbols.
+enum Roots {
+    None,
+    Irrational(Vec<f64>),
+    Rational(Vec<Complex>),
+}
+
+fn quadratic(aside: &Polynomial, k: i32) -> Roots {
+    let at = |k: i32| aside.iter().filter(move |(key, _)| key[0] == k);
+    let Some((_, g)) = at(k).next() else { return Roots::None };
+    let half = at(0).next().map(|(_, a)| Rational::from(&a[0] / -2)).unwrap_or_default();
+    // Without a, g may be one complex number times a real polynomial.
+    let one = |c: &Complex| half.is_zero() && times(c, &conjugate(g))[1].is_zero();
+    if !at(k).all(|(_, c)| one(c)) && aside.keys().any(|key| key[1..].iter().any(|e| *e != 0)) {
+        return Roots::Irrational(Vec::new());
+    }
+    let gap = square(g) - half.clone().square();
+    if gap < 0 {
+        return Roots::None;
+    }
+    let over = times(&conjugate(g), &real(square(g).recip()));
+    match square_root(&gap) {
+        Some(side) => {
+            let both = [side.clone(), -side].map(|side| times(&[half.clone(), side], &over));
+            Roots::Rational(both.into())
+        }
+        None => {
+            let side = gap.to_f64().sqrt().atan2(half.to_f64());
+            Roots::Irrational(vec![angle(&over) + side, angle(&over) - side])
+        }
+    }
+}
+
+/// The quarters of a turn among the roots of several harmonics.
+fn quarters(aside: &Polynomial) -> Roots {
+    let vanishes = |v: &Complex| {
+        let mut sum = Polynomial::new();
+        for (key, c) in aside {
+            let still = std::iter::once(0).chain(key[1..].iter().copied()).collect();
+            let one = [(vec![0; key.len()], real(1))].into();
+            add_product(&mut sum, &[(still, times(c, &power(v, key[0])))].into(), &one);
+        }
+        sum.is_empty()
+    };
+    let quarters = (0..4).map(|j| power(&[0.into(), 1.into()], j));
+    match quarters.filter(vanishes).collect::<Vec<_>>() {
+        roots if roots.is_empty() => Roots::Irrational(Vec::new()),
+        roots => Roots::Rational(roots),
     }
 }
 
