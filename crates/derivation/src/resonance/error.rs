@@ -68,8 +68,8 @@ pub enum ResonanceError {
     },
     /// A motion that a parameter keeps periodic starts with a mixture that is not rational.
     #[error(
-        "order {order}: the periodic motions start with mixtures of cosine and sine that are no rational ones{}",
-        if roots.is_empty() { String::new() } else { format!(", with {parameter} = {roots}") }
+        "order {order}: no rational mixture of cosine and sine starts a periodic motion{}",
+        if roots.is_empty() { String::new() } else { format!(", irrational ones with {parameter} = {roots}") }
     )]
     Mixture {
         /// The order that fixes it.

@@ -174,6 +174,7 @@ impl Serialize for Sought {
         map.serialize_entry("frequency", &self.frequency.to_string())?;
         map.serialize_entry("symbols", &self.symbols)?;
         map.serialize_entry("branches", &self.branches.iter().map(branch).collect::<Vec<_>>())?;
+        map.serialize_entry("all", &self.all)?;
         map.serialize_entry("method", &Object(vec![("name", "Lindstedt-Poincare")]))?;
         map.end()
     }

@@ -29,7 +29,7 @@ use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
 use rug::Rational;
-use start::{Complex, Search, Start, power};
+use start::{Complex, Search, Start, Starts, power};
 
 /// A parameter as a series, for every motion that stays periodic.
 ///
@@ -62,6 +62,9 @@ pub struct Sought {
     pub order: usize,
     /// The motions: where the force does not choose, of the cosine and of the sine; one where there is no force.
     pub branches: Vec<SoughtBranch>,
+    /// Whether no other mixture of cosine and sine starts a periodic motion; where the condition has several harmonics, only
+    /// the cosine and the sine with either sign are tried.
+    pub all: bool,
 }
 
 /// One motion and the series of the parameter.
@@ -185,6 +188,7 @@ pub fn sought(
         symbols,
         order: settings.order,
         branches: Vec::new(),
+        all: true,
     };
     let task = Task {
         algebra: &algebra,
@@ -197,8 +201,9 @@ pub fn sought(
         names: Names(problem),
     };
     let (order, largest) = (settings.order, algebra.largest_exponent());
-    let (starts, decided) = task.starts(harmonic, &amplitude, observer)?;
-    for start in starts {
+    let Starts { list, order: decided, all } = task.starts(harmonic, &amplitude, observer)?;
+    found.all = all;
+    for start in list {
         let wave = algebra.wave(0, harmonic);
         let [cos, sin] = wave.ok_or(ResonanceError::TooHigh { order, largest })?;
         let [re, im] = start.direction.each_ref().map(|part| Rational::from(part * &amplitude));
@@ -264,9 +269,10 @@ impl Task<'_> {
         harmonic: i32,
         amplitude: &Rational,
         observer: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<(Vec<Start>, usize), Error> {
+    ) -> Result<Starts, Error> {
         if self.step == 0 {
-            return Ok((Start::symmetric().into_iter().take(1).collect(), 1));
+            let list = Start::symmetric().into_iter().take(1).collect();
+            return Ok(Starts { list, order: 1, all: true });
         }
         let names: Vec<&str> = self.system.symbols.iter().map(String::as_str).collect();
         let algebra = Amplitudes::new(Integers, &self.system.frequencies, self.base, &names);

@@ -6,7 +6,7 @@ use crate::delays::{C, add, mul, times};
 use lindstedt_algebra::Rationals;
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::averaging::AveragingSettings;
-use lindstedt_derivation::resonance::{Sought, sought};
+use lindstedt_derivation::resonance::{Sought, SoughtBranch, sought};
 use lindstedt_number::Exact;
 use lindstedt_problem_file::ProblemFile;
 use lindstedt_series::Series;
@@ -35,9 +35,7 @@ fn numbers(found: &Sought) -> Vec<Vec<Rational>> {
         }
         _ => panic!("no number"),
     };
-    let series = |b: &lindstedt_derivation::resonance::SoughtBranch| {
-        b.series.iter().map(coefficient).collect()
-    };
+    let series = |b: &SoughtBranch| b.series.iter().map(coefficient).collect();
     found.branches.iter().map(series).collect()
 }
 
@@ -256,7 +254,16 @@ fn mixtures_that_are_not_rational() {
     let text = refused("x'' + (a + eps*(k*cos(2*t)+sin(4*t)))*x", 1);
     assert!(text.contains("below the line"), "{text}");
     let text = refused("x'' + (a + eps*(cos(2*t)+cos(4*t+pi/2)+sin(6*t)))*x", 4);
-    assert!(text.starts_with("order 1: the periodic motions start with mixtures"), "{text}");
+    assert!(text.starts_with("order 1: no rational mixture"), "{text}");
+}
+
+/// a_1 z + 2 zbar = 1/2 at z = e^{i theta}/2 asks for sin theta (4 cos theta - 1) = 0: two roots more than what is
+/// tried, and it is told.
+#[test]
+fn several_harmonics_of_the_start() {
+    let found = found("x'' + (a + q*4*cos(2*t))*x - q*cos(t)", 1, 2);
+    let starts: Vec<_> = found.branches.iter().map(SoughtBranch::starts_with).collect();
+    assert_eq!((found.all, starts), (false, vec!["cos".to_owned(), "-cos".to_owned()]));
 }
 
 /// s = -omega_2 of x'' + x + e (x^3 + s x), and the amplitude of a force, which order zero does not know.

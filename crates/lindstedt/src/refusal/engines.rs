@@ -23,6 +23,9 @@ const DELAY: &str = "`lindstedt derive` without --mode and --unknown averages a 
 const STRONG_DELAY: &str = "with a factor eps, eps*x(t - T), a delay is averaged; of one unknown `lindstedt derive --unknown \
      NAME` finds the Hopf points of a parameter, and `lindstedt simulate` takes it as it is";
 
+/// What has the motions of which a sought parameter has no series.
+const ALL: &str = "`lindstedt derive` without --unknown has the slow flow of all motions";
+
 /// What to do with the irrational frequency of a force.
 const FRACTION: &str =
     "a fraction near it, with the difference as eps*sigma; `lindstedt simulate` takes it as it is";
@@ -114,11 +117,7 @@ impl Refusal for ResonanceError {
                 (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
             }
             Self::NoStart { .. } => (Usage, "no-value-set", "--set NAME=VALUE"),
-            Self::Mixture { .. } | Self::Turns { .. } => (
-                NoAnswer,
-                "no-expansion",
-                "`lindstedt derive` without --unknown has the slow flow of all motions",
-            ),
+            Self::Mixture { .. } | Self::Turns { .. } => (NoAnswer, "no-expansion", ALL),
             Self::SoughtOfSeveral { .. } | Self::ForcedMode => (NoAnswer, "no-method", ""),
             Self::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
             Self::InternalResonance { .. } => {

@@ -42,6 +42,12 @@ impl Present for Answer<Sought> {
         page = page.words(format!(
             "Sought: {name}, for which x stays periodic with the frequency {nu}; corrections have {own} of that frequency."
         ));
+        if !found.all {
+            page = page.words(
+                "Motions that start with cos or sin alone; other mixtures were not tried."
+                    .to_owned(),
+            );
+        }
         for branch in &found.branches {
             page = page.formula(both(|style| {
                 format!("{} = {}", print_name(name, style), found.print_series(branch, style))

@@ -90,6 +90,13 @@ impl Start {
     }
 }
 
+/// The starts, the order that fixes them, and whether these are all.
+pub(super) struct Starts {
+    pub list: Vec<Start>,
+    pub order: usize,
+    pub all: bool,
+}
+
 /// A polynomial: the exponents of v and of the symbols.
 type Polynomial = BTreeMap<Vec<i32>, Complex>;
 
@@ -137,7 +144,7 @@ pub(super) struct Search<'a> {
 
 impl Search<'_> {
     /// The starts, and the order that fixes them.
-    pub(super) fn starts(&mut self, order: usize) -> Result<(Vec<Start>, usize), Error> {
+    pub(super) fn starts(&mut self, order: usize) -> Result<Starts, Error> {
         let (mut flow, mut values) = (Vec::new(), Vec::<Polynomial>::new());
         for n in 1..=order {
             if flow.len() <= n {
@@ -156,14 +163,16 @@ impl Search<'_> {
             let value = part(&ratio, &real(-(square(c) * 2u32).recip()), 1);
             let aside = part(&ratio, &[0.into(), (-1, 2).into()], -1);
             if !aside.is_empty() {
-                return Ok((self.solved(n, &aside, &value)?, n));
+                let harmonics = aside.keys().map(|key| key[0]).filter(|k| *k > 0);
+                let all = harmonics.collect::<BTreeSet<_>>().len() == 1;
+                return Ok(Starts { list: self.solved(n, &aside, &value)?, order: n, all });
             }
             if value.keys().any(|key| key[0] != 0) {
                 break;
             }
             values.push(value);
         }
-        Ok((Start::symmetric(), 1))
+        Ok(Starts { list: Start::symmetric(), order: 1, all: true })
     }
 
     /// F_n from f_1, ..., f_n and p_0, ..., p_{n-2}.
