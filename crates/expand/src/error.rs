@@ -41,6 +41,14 @@ pub enum ExpandError {
         /// The order.
         order: usize,
     },
+    /// The parts of a motion with its own frequency are no polynomials in the parameters without a value.
+    #[error(
+        "order {order}: cosine and sine of the motion mix in a ratio with parameters without a value below the line"
+    )]
+    TurnsBySymbols {
+        /// The order.
+        order: usize,
+    },
     /// At order zero the equation is not a linear oscillator.
     #[error(
         "without the small parameter the equation is not x'' + k*x: it has damping, a delay or a nonlinear \

@@ -397,7 +397,7 @@ impl Oscillator {
             return Ok(());
         }
         let message = "this question is for one unknown, and there are several equations";
-        let hint = "`lindstedt derive` averages them";
+        let hint = "`lindstedt derive` averages them, `simulate` integrates them";
         Err(Refused::no_answer("several-unknowns", message, hint).into())
     }
 

@@ -60,6 +60,36 @@ pub enum ResonanceError {
         /// The unknowns.
         unknowns: usize,
     },
+    /// A parameter that is sought, without the value it starts from.
+    #[error("the series of {name} starts from its value at order zero, which is not given")]
+    NoStart {
+        /// The parameter.
+        name: String,
+    },
+    /// A motion that a parameter keeps periodic starts with a mixture that is not rational.
+    #[error(
+        "order {order}: no rational mixture of cosine and sine starts a periodic motion{}",
+        if roots.is_empty() { String::new() } else { format!(", irrational ones with {parameter} = {roots}") }
+    )]
+    Mixture {
+        /// The order that fixes it.
+        order: usize,
+        /// The coefficient of the parameter,
+        parameter: String,
+        /// and its values, where they are numbers.
+        roots: String,
+    },
+    /// A periodic motion turns from its start.
+    #[error(
+        "order {order}: the periodic motion turns from its start, which order {decided} fixes; it is followed from those that \
+         order 1 fixes"
+    )]
+    Turns {
+        /// The order.
+        order: usize,
+        /// The order that fixes the start.
+        decided: usize,
+    },
     /// A parameter that is sought and does not occur.
     #[error("{name} is sought, but does not occur in the equation")]
     NotSought {

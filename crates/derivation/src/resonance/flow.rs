@@ -27,13 +27,9 @@ pub(super) struct Symbols<'a, S: Scalars> {
 
 impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
     fn parameter(&self, name: &str) -> Option<AmplitudeElement<S::Element>> {
-        if let Some(wave) = name.strip_prefix(WAVE) {
-            let mut parts = wave.split(',').map(|part| part.parse::<i32>().ok());
-            let mut next = || parts.next().flatten();
-            let (l, m, sine) = (next()?, next()?, next()?);
-            let [cos, sin] =
-                self.algebra.wave(usize::try_from(l).ok()?, m.checked_mul(self.step)?)?;
-            return Some(if sine == 1 { sin } else { cos });
+        if let Some((l, m, sine)) = wave_of(name) {
+            let [cos, sin] = self.algebra.wave(l, m.checked_mul(self.step)?)?;
+            return Some(if sine { sin } else { cos });
         }
         let other = || Some(self.algebra.constant((self.other)(name)?));
         self.algebra.symbol(name).or_else(other)
@@ -47,6 +43,13 @@ impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
 }
 
 const WAVE: &str = "'wave";
+
+/// l and m of cos(m eta_l) or sin(m eta_l) by their name, and whether it is the sine.
+pub(super) fn wave_of(name: &str) -> Option<(usize, i32, bool)> {
+    let mut parts = name.strip_prefix(WAVE)?.split(',').map(|part| part.parse::<i32>().ok());
+    let mut next = || parts.next().flatten();
+    Some((next()?.try_into().ok()?, next()?, next()? == 1))
+}
 
 /// The equations of a system with the waves as [`Symbols`] reads them.
 pub(super) fn compiled_form(system: &System) -> Vec<Expression> {

@@ -152,7 +152,8 @@ impl Serialize for NormalMode {
 /// One motion of a parameter that is sought.
 #[derive(Serialize)]
 struct Branch {
-    starts_with: &'static str,
+    starts_with: String,
+    origin: String,
     series: Vec<String>,
     solution: Vec<String>,
     residual: Residual,
@@ -161,7 +162,8 @@ struct Branch {
 impl Serialize for Sought {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let branch = |branch: &SoughtBranch| Branch {
-            starts_with: if branch.sine { "sin" } else { "cos" },
+            starts_with: branch.starts_with(),
+            origin: branch.origin.clone(),
             series: branch.series.iter().map(|t| self.print_coefficient(t, Style::Text)).collect(),
             solution: branch.solution.iter().map(|t| self.print_motion(t, Style::Text)).collect(),
             residual: Residual::of(branch.checked_orders, false),
@@ -172,6 +174,7 @@ impl Serialize for Sought {
         map.serialize_entry("frequency", &self.frequency.to_string())?;
         map.serialize_entry("symbols", &self.symbols)?;
         map.serialize_entry("branches", &self.branches.iter().map(branch).collect::<Vec<_>>())?;
+        map.serialize_entry("all", &self.all)?;
         map.serialize_entry("method", &Object(vec![("name", "Lindstedt-Poincare")]))?;
         map.end()
     }

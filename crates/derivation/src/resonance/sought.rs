@@ -2,12 +2,15 @@
 //! the tongues of Mathieu's and Hill's equations.
 //!
 //!   x'' + a x + eps (...) = 0,   a = a_0 + eps a_1 + ...,   a_0 = nu^2 the value given,
-//!   x = A cos(nu t) + ... or A sin(nu t) + ...,   no correction with the frequency nu,
+//!   x = A cos(nu t) + ... or A sin(nu t) + ... or a mixture of both ([`start`]), corrections of frequency nu
+//!   only beside it,
 //!
-//! nu and the force's frequency being whole multiples of one frequency. Each of the two motions has its a; at
+//! nu and the force's frequency being whole multiples of one frequency. Each of the motions has its a; at
 //! even and odd ones of Mathieu's equation they are a_m(q) and b_m(q) (DLMF 28.6).
 
-use super::flow::{Symbols, compiled_form};
+mod start;
+
+use super::flow::{Symbols, compiled_form, wave_of};
 use super::forces::divisor;
 use super::modes::modes_refused;
 use super::print::print_powers;
@@ -18,14 +21,15 @@ use crate::error::DerivationError as Error;
 use crate::limits::refuse_taken;
 use crate::values::value;
 use crate::work::Progress;
-use lindstedt_algebra::RationalAlgebra;
+use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Style, Term, print_sum};
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_expand::resonance::{check_flow, periodic};
+use lindstedt_expand::resonance::{check_flow, periodic, resonant};
 use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
 use rug::Rational;
+use start::{Complex, Search, Start, Starts, power};
 
 /// A parameter as a series, for every motion that stays periodic.
 ///
@@ -56,16 +60,21 @@ pub struct Sought {
     pub symbols: Vec<String>,
     /// The orders asked for.
     pub order: usize,
-    /// The motions: of the cosine, of the sine; one where there is no force.
+    /// The motions: where the force does not choose, of the cosine and of the sine; one where there is no force.
     pub branches: Vec<SoughtBranch>,
+    /// Whether no other mixture of cosine and sine starts a periodic motion; where the condition has several harmonics, only
+    /// the cosine and the sine with either sign are tried.
+    pub all: bool,
 }
 
 /// One motion and the series of the parameter.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct SoughtBranch {
-    /// Whether x begins with the sine.
-    pub sine: bool,
+    /// How x begins, c cos(nu t) + s sin(nu t) with c^2 + s^2 = 1.
+    pub start: [Rational; 2],
+    /// The time of the equation at which that of the motion is 0.
+    pub origin: String,
     /// a_0, a_1, ...: polynomials in the symbols.
     pub series: Vec<Terms>,
     /// x_0, x_1, ...: the exponent of E is the harmonic of the base frequency.
@@ -78,16 +87,42 @@ impl SoughtBranch {
     /// The highest order derived.
     #[must_use]
     pub fn order(&self) -> usize {
-        self.series.len().saturating_sub(1)
+        self.solution.len().saturating_sub(1)
+    }
+
+    /// Whether corrections have a part of the frequency of x_0.
+    #[must_use]
+    pub fn turns(&self) -> bool {
+        let motion = |terms: &Terms| -> Vec<i32> { terms.iter().map(|t| t.exponents[2]).collect() };
+        let own = self.solution.first().map(motion).unwrap_or_default();
+        self.solution.iter().skip(1).any(|terms| motion(terms).iter().any(|m| own.contains(m)))
+    }
+
+    /// cos, sin, or c*cos + s*sin.
+    #[must_use]
+    pub fn starts_with(&self) -> String {
+        let part = |(c, name): (&Rational, &str)| Term {
+            coefficient: c.clone(),
+            factors: vec![name.to_owned()],
+        };
+        let parts = self.start.iter().zip(["cos", "sin"]).filter(|(c, _)| !c.is_zero());
+        print_sum(&parts.map(part).collect::<Vec<_>>(), Style::Text)
     }
 }
 
-/// Parameters by name, one of which is sought.
-struct Seeking<'a>(Symbols<'a, Integers>, &'a str);
+/// Parameters by name, one of which is sought, and e^{i eta} turned.
+struct Seeking<'a>(Symbols<'a, Integers>, &'a str, &'a Complex);
 
 impl Binding<Amplitudes<Integers>> for Seeking<'_> {
     fn parameter(&self, name: &str) -> Option<Element> {
-        self.0.parameter(name)
+        let own = self.0.parameter(name)?;
+        let Some((l, m, sine)) = wave_of(name) else { return Some(own) };
+        // cos(m eta + phi) = cos phi cos(m eta) - sin phi sin(m eta), and so the sine.
+        let [cos, sin] = power(self.2, m);
+        let algebra = self.0.algebra;
+        let [wave, other] = algebra.wave(l, m.checked_mul(self.0.step)?)?;
+        let (other, sin) = if sine { (wave, sin) } else { (other, -sin) };
+        Some(algebra.add(&algebra.scale(&own, &cos), &algebra.scale(&other, &sin)))
     }
     fn formal(&self, name: &str, n: usize) -> Option<Element> {
         self.0.formal(name, n)
@@ -97,15 +132,15 @@ impl Binding<Amplitudes<Integers>> for Seeking<'_> {
     }
 }
 
-/// The parameter `name` for which the motion of frequency nu = sqrt(a_0) stays periodic; a_0 is its value
-/// among the settings or on its card. The amplitude A is the value of `amplitude`, else 1; other parameters
+/// The parameter `name` for which the motion of frequency nu stays periodic; where it occurs at order zero, it starts from
+/// its value among the settings or on its card, else from what order one says. The amplitude A is the value of `amplitude`, else 1; other parameters
 /// as for [`super::slow_flow`].
 ///
 /// Exact; every order is substituted back. Cost: for Mathieu's equation O(N^3) products of numbers.
 ///
 /// # Errors
-/// [`ResonanceError`] for what is no such system; [`ExpandError::NotBalanced`] where no value keeps one of
-/// the motions periodic; [`Error::SymbolTaken`] for a symbol named like one of the orders, x_1.
+/// [`ResonanceError`] for what is no such system; [`ExpandError::NotBalanced`] where no value keeps a motion
+/// periodic; [`Error::SymbolTaken`] for a symbol named like one of the orders, x_1.
 pub fn sought(
     problem: &Problem,
     name: &str,
@@ -149,44 +184,48 @@ pub fn sought(
         problem: problem.clone(),
         parameter: name.to_owned(),
         frequency,
-        base,
+        base: base.clone(),
         symbols,
         order: settings.order,
         branches: Vec::new(),
+        all: true,
     };
     let task = Task {
         algebra: &algebra,
         system: &system,
         settings,
-        start: &start,
+        start: start.as_ref(),
         name,
         step,
+        base: &base,
         names: Names(problem),
     };
-    let mut refused = None;
-    for sine in [false, true].into_iter().take(if step == 0 { 1 } else { 2 }) {
-        let (order, largest) = (settings.order, algebra.largest_exponent());
-        let high = ResonanceError::TooHigh { order, largest };
-        let [cos, sin] = algebra.wave(0, harmonic).ok_or(high)?;
-        let generating = algebra.scale(if sine { &sin } else { &cos }, &amplitude);
-        match task.branch(sine, generating, observer) {
-            Ok(branch) => found.branches.push(branch),
-            Err(error @ Error::Expand(ExpandError::NotBalanced { .. })) => refused = Some(error),
-            Err(error) => return Err(error),
-        }
+    let (order, largest) = (settings.order, algebra.largest_exponent());
+    let Starts { list, order: decided, all } = task.starts(harmonic, &amplitude, observer)?;
+    found.all = all;
+    for start in list {
+        let wave = algebra.wave(0, harmonic);
+        let [cos, sin] = wave.ok_or(ResonanceError::TooHigh { order, largest })?;
+        let [re, im] = start.direction.each_ref().map(|part| Rational::from(part * &amplitude));
+        let generating = algebra.sub(&algebra.scale(&cos, &re), &algebra.scale(&sin, &im));
+        found.branches.push(task.branch(start, generating, observer).map_err(
+            |error| match error {
+                Error::Expand(ExpandError::NotBalanced { order }) if decided > 1 => {
+                    ResonanceError::Turns { order, decided }.into()
+                }
+                error => error,
+            },
+        )?);
     }
-    match refused {
-        Some(error) if found.branches.is_empty() => Err(error),
-        _ => Ok(found),
-    }
+    Ok(found)
 }
 
-/// a_0, and the equation with a_0 + eps a in the place of a.
+/// a_0, and the equation with a_0 + eps a in the place of a; the equation as it is where eps is a factor of a.
 fn beginning(
     problem: &Problem,
     name: &str,
     settings: &AveragingSettings,
-) -> Result<(Rational, Expression), Error> {
+) -> Result<(Option<Rational>, Expression), Error> {
     if !problem.others.is_empty() {
         let unknowns = 1 + problem.others.len();
         return Err(ResonanceError::SoughtOfSeveral { unknowns }.into());
@@ -194,7 +233,11 @@ fn beginning(
     if !problem.equation.parameters().iter().any(|known| known == name) {
         return Err(ResonanceError::NotSought { name: name.to_owned() }.into());
     }
-    let unset = || Error::Unset { problem: problem.name.to_string(), name: name.to_owned() };
+    let small = |e: &Expression| matches!(e, Expression::Small).then(|| 0.into());
+    if !problem.equation.map(&small).canonical().parameters().iter().any(|known| known == name) {
+        return Ok((None, problem.equation.clone()));
+    }
+    let unset = || ResonanceError::NoStart { name: name.to_owned() };
     let start = value(problem, &settings.parameters, name).ok_or_else(unset)?;
     let irrational = || Error::Irrational { name: name.to_owned(), value: start.to_string() };
     let start = start.as_rational().ok_or_else(irrational)?.clone();
@@ -205,40 +248,83 @@ fn beginning(
         _ => None,
     };
     let equation = problem.equation.substitute(&around).canonical();
-    Ok((start, equation))
+    Ok((Some(start), equation))
 }
 
 struct Task<'a> {
     algebra: &'a Amplitudes<Integers>,
     system: &'a System,
     settings: &'a AveragingSettings,
-    start: &'a Rational,
+    start: Option<&'a Rational>,
     name: &'a str,
     step: i32,
+    base: &'a Rational,
     names: Names<'a>,
 }
 
 impl Task<'_> {
-    fn branch(
+    /// The directions and turns of the motions, and the order that fixes them; [`start`].
+    fn starts(
         &self,
-        sine: bool,
-        generating: Element,
+        harmonic: i32,
+        amplitude: &Rational,
         observer: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<SoughtBranch, Error> {
-        let (algebra, order) = (self.algebra, self.settings.order);
-        let symbols = Symbols { algebra, step: self.step.max(1), other: &|_| None };
-        let binding = Seeking(symbols, self.name);
-        let graph = compile_system(algebra, &compiled_form(self.system), &binding, order)?;
+    ) -> Result<Starts, Error> {
+        if self.step == 0 {
+            let list = Start::symmetric().into_iter().take(1).collect();
+            return Ok(Starts { list, order: 1, all: true });
+        }
+        let names: Vec<&str> = self.system.symbols.iter().map(String::as_str).collect();
+        let algebra = Amplitudes::new(Integers, &self.system.frequencies, self.base, &names);
+        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
+        let algebra = algebra.with_stop(self.settings.stop.clone());
+        let symbols = Symbols { algebra: &algebra, step: self.step, other: &|_| None };
+        let equations = compiled_form(self.system);
+        let detuning = self.detuning(&algebra)?;
+        let place = names.iter().position(|name| *name == self.name).unwrap_or_default();
+        let mut flow = |order| {
+            let graph = compile_system(&algebra, &equations, &symbols, order)?;
+            let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
+            let found = resonant(&algebra, &graph, order, &detuning, &mut on_order)?;
+            let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
+            Ok(found.flow.iter().flatten().map(terms).collect())
+        };
+        let mut search = Search {
+            flow: &mut flow,
+            symbols: (names.len(), place),
+            amplitude,
+            multiples: [harmonic, self.step],
+            name: &|n| format!("{}_{}", self.name, if self.start.is_some() { n } else { n - 1 }),
+        };
+        search.starts(self.settings.order)
+    }
+
+    fn detuning(
+        &self,
+        algebra: &Amplitudes<Integers>,
+    ) -> Result<Vec<Vec<Element>>, ResonanceError> {
         // The phase of the force turns `step` times as fast as that of the algebra.
         let scale = Rational::from((1, self.step.max(1)));
         let sigma = |e: &Expression| {
             let refused = || ResonanceError::NotAForce { term: self.names.shown(e) };
             let sigma = constant(algebra, e, &|name| algebra.symbol(name)).ok_or_else(refused)?;
-            Ok::<_, ResonanceError>(algebra.scale(&sigma, &scale))
+            Ok(algebra.scale(&sigma, &scale))
         };
         let forces = self.system.forces.iter();
-        let list = |phase: &super::Phase| phase.detuning.iter().map(sigma).collect();
-        let detuning = forces.map(list).collect::<Result<Vec<Vec<_>>, _>>()?;
+        forces.map(|phase| phase.detuning.iter().map(sigma).collect()).collect()
+    }
+
+    fn branch(
+        &self,
+        start: Start,
+        generating: Element,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<SoughtBranch, Error> {
+        let (algebra, order) = (self.algebra, self.settings.order);
+        let symbols = Symbols { algebra, step: self.step.max(1), other: &|_| None };
+        let binding = Seeking(symbols, self.name, &start.turn);
+        let graph = compile_system(algebra, &compiled_form(self.system), &binding, order)?;
+        let detuning = self.detuning(algebra)?;
         let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
         let found = periodic(algebra, &graph, order, &detuning, vec![generating], &mut on_order)?;
         if algebra.overflowed() {
@@ -252,14 +338,35 @@ impl Task<'_> {
             other => Some(other?),
         };
         let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
-        let start = algebra.rational(self.start);
+        let first = self.start.map(|start| algebra.rational(start));
+        let [cos, sin] = start.direction;
         Ok(SoughtBranch {
-            sine,
-            series: std::iter::once(&start).chain(&found.parameter).map(terms).collect(),
+            start: [cos, -sin],
+            origin: self.names.shown(&origin(self.system, &start.turn)),
+            series: first.iter().chain(&found.parameter).map(terms).collect(),
             solution: found.solution.iter().flatten().map(terms).collect(),
             checked_orders,
         })
     }
+}
+
+/// t_0 of Omega t + the phase of the force = Omega (t - t_0) + arg(turn).
+fn origin(system: &System, turn: &Complex) -> Expression {
+    let [force] = &system.forces[..] else { return 0.into() };
+    let pi = || Expression::parameter("pi");
+    let angle = match turn {
+        [re, im] if re.is_zero() => Expression::Number(Rational::from(im / 2)) * pi(),
+        [re, im] => {
+            let half = Expression::integer(if *re > 0 { 0 } else { 1 }) * pi();
+            let tangent = Rational::from(im / re);
+            match tangent.is_zero() {
+                true => half,
+                false => half + Expression::parameter(&format!("arctan({tangent})")),
+            }
+        }
+    };
+    let gap = angle - force.start.clone();
+    (gap * Expression::Number(system.force().recip())).canonical()
 }
 
 impl Sought {

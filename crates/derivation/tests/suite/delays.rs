@@ -12,17 +12,17 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// A complex number.
-type C = [f64; 2];
+pub type C = [f64; 2];
 
-fn add(a: C, b: C) -> C {
+pub fn add(a: C, b: C) -> C {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-fn mul(a: C, b: C) -> C {
+pub fn mul(a: C, b: C) -> C {
     [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
 
-fn times(a: C, x: f64) -> C {
+pub fn times(a: C, x: f64) -> C {
     [a[0] * x, a[1] * x]
 }
 

@@ -2,10 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use crate::delays::{C, add, mul, times};
 use lindstedt_algebra::Rationals;
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::averaging::AveragingSettings;
-use lindstedt_derivation::resonance::{Sought, sought};
+use lindstedt_derivation::resonance::{Sought, SoughtBranch, sought};
 use lindstedt_number::Exact;
 use lindstedt_problem_file::ProblemFile;
 use lindstedt_series::Series;
@@ -34,9 +35,7 @@ fn numbers(found: &Sought) -> Vec<Vec<Rational>> {
         }
         _ => panic!("no number"),
     };
-    let series = |b: &lindstedt_derivation::resonance::SoughtBranch| {
-        b.series.iter().map(coefficient).collect()
-    };
+    let series = |b: &SoughtBranch| b.series.iter().map(coefficient).collect();
     found.branches.iter().map(series).collect()
 }
 
@@ -140,4 +139,144 @@ fn nonlinear_and_symbolic() {
     let forced = found("x'' + a*x + q*h*x^3 + q*k*x*cos(2*t) = 0", 1, 1);
     let lines = forced.branches.iter().map(|b| forced.print_series(b, Style::Text));
     assert_eq!(lines.collect::<Vec<_>>(), ["1 + (-3/4*h - 1/2*k)*q", "1 + (-3/4*h + 1/2*k)*q"]);
+}
+
+/// As many motions and coefficients as expected, whatever their order.
+#[test]
+fn a_shift_of_time_moves_no_edge() {
+    for m in [1, 2, 3] {
+        let expected = |scale: &Rational| {
+            let scaled = |list: Vec<Rational>| {
+                let power =
+                    |(n, c): (usize, Rational)| c * rug::ops::Pow::pow(scale.clone(), n as u32);
+                list.into_iter().take(9).enumerate().map(power).collect::<Vec<_>>()
+            };
+            let mut both = [edge(m.into(), true), edge(m.into(), false)].map(scaled);
+            both.sort();
+            both.to_vec()
+        };
+        for (force, scale) in [("sin(2*t)", 1), ("3*cos(2*t)+4*sin(2*t)", 5), ("cos(2*t+pi/3)", 1)]
+        {
+            let found = found(&format!("x'' + (a + q*({force}))*x"), m * m, 8);
+            let origins: Vec<_> = found.branches.iter().map(|b| &*b.origin).collect();
+            match force {
+                "sin(2*t)" if m == 1 => assert_eq!(origins, ["-1/4*pi", "1/4*pi"]),
+                "cos(2*t+pi/3)" => assert_eq!(origins, ["-1/6*pi", "-1/6*pi"]),
+                _ => {}
+            }
+            let mut derived = numbers(&found);
+            derived.sort();
+            assert_eq!(derived, expected(&Rational::from((scale, 2))), "{force}, m = {m}");
+        }
+    }
+}
+
+/// The determinant of the harmonics e^{imt}, m odd, of x'' + d x' + (a + sum_k f_k e^{2ikt}) x; real for f_{-k} = conj f_k.
+fn determinant(a: f64, damping: f64, f: &[C]) -> f64 {
+    let entry = |i: i32, j: i32| {
+        let (m, k) = (f64::from(2 * i - 15), i - j);
+        let force = f.get(k.unsigned_abs() as usize).copied().unwrap_or_default();
+        let own = if k == 0 { [a - m * m, damping * m] } else { [0.0; 2] };
+        times(add(own, [force[0], force[1] * f64::from(k.signum())]), 1.0 / (m * m))
+    };
+    let mut rows: Vec<Vec<C>> = (0..16).map(|i| (0..16).map(|j| entry(i, j)).collect()).collect();
+    let size = |c: C| c[0].hypot(c[1]);
+    let mut product = [1.0, 0.0];
+    for k in 0..16 {
+        let pivot = (k..16).max_by(|i, j| size(rows[*i][k]).total_cmp(&size(rows[*j][k]))).unwrap();
+        if pivot != k {
+            rows.swap(k, pivot);
+            product = times(product, -1.0);
+        }
+        let lead = rows[k].clone();
+        product = mul(product, lead[k]);
+        let inverse = times([lead[k][0], -lead[k][1]], size(lead[k]).powi(-2));
+        for row in &mut rows[k + 1..] {
+            let factor = mul(row[k], times(inverse, -1.0));
+            (k..16).for_each(|j| row[j] = add(row[j], mul(factor, lead[j])));
+        }
+    }
+    product[0]
+}
+
+/// Motions that turn: at q = 1/16 the determinant vanishes where the series say, up to what is left out.
+#[test]
+fn edges_of_mixtures_against_the_determinant() {
+    let q = 0.0625;
+    let third = std::f64::consts::FRAC_PI_3;
+    let third = [third.cos() / 2.0, third.sin() / 2.0];
+    let cases: [(&str, f64, [[f64; 2]; 3]); 4] = [
+        ("q*(cos(2*t)+sin(4*t))*x", 0.0, [[0.0; 2], [0.5, 0.0], [0.0, -0.5]]),
+        ("q*cos(2*t)*x + 3/10*q*x'", 0.3, [[0.0; 2], [0.5, 0.0], [0.0; 2]]),
+        ("q*(sin(2*t)+cos(4*t))*x", 0.0, [[0.0; 2], [0.0, -0.5], [0.5, 0.0]]),
+        ("q*(cos(2*t)+cos(4*t+pi/3))*x", 0.0, [[0.0; 2], [0.5, 0.0], third]),
+    ];
+    for (force, damping, f) in cases {
+        let found = found(&format!("x'' + a*x + {force}"), 1, 8);
+        assert_eq!(found.branches.len(), 2, "{force}");
+        for branch in &found.branches {
+            let value = |terms: &Vec<lindstedt_phase::amplitudes::AmplitudeTerm>| {
+                let value = |t: &lindstedt_phase::amplitudes::AmplitudeTerm| {
+                    let [_, _, _, symbols @ ..] = &t.exponents[..] else { panic!("exponents") };
+                    let names = found.symbols.iter().zip(symbols);
+                    let number = |(name, n): (&String, &i32)| {
+                        let part = if name.starts_with("cos") { third[0] } else { third[1] };
+                        (2.0 * part).powi(*n)
+                    };
+                    t.re.to_f64() * names.map(number).product::<f64>()
+                };
+                terms.iter().map(value).sum::<f64>()
+            };
+            let a: f64 = branch.series.iter().rev().fold(0.0, |sum, terms| sum * q + value(terms));
+            let at = |a: f64| determinant(a, damping * q, &f.map(|c| c.map(|part| part * q)));
+            let step = 1e-6;
+            let slope = (at(a + step) - at(a - step)) / (2.0 * step);
+            let error = at(a) / slope;
+            assert!(error.abs() < 1e-11, "{force}: {a} is off by {error}");
+        }
+    }
+}
+
+/// What has no series is refused with the order, and with numbers where there are some.
+#[test]
+fn mixtures_that_are_not_rational() {
+    let refused = |equation: &str, start: u32| {
+        let problem = ProblemFile::parse(&format!("equation = {equation:?}")).unwrap().problem;
+        let parameters = [("a".to_owned(), Exact::Rational(start.into()))].into();
+        let settings = AveragingSettings { order: 3, parameters, ..AveragingSettings::default() };
+        sought(&problem, "a", &settings, &mut |_| true).unwrap_err().to_string()
+    };
+    let text = refused("x'' + (a + eps*cos(2*t))*x + eps*x'/5", 1);
+    assert!(text.ends_with("a_1 = -0.458258, 0.458258"), "{text}");
+    // Sought from damping that the force does not make good: none.
+    let text = refused("x'' + (a + eps*cos(2*t))*x + 3/5*eps*x'", 1);
+    assert!(text.contains("no value"), "{text}");
+    let text = refused("x'' + (a + eps*(k*cos(2*t)+sin(4*t)))*x", 1);
+    assert!(text.contains("below the line"), "{text}");
+    let text = refused("x'' + (a + eps*(cos(2*t)+cos(4*t+pi/2)+sin(6*t)))*x", 4);
+    assert!(text.starts_with("order 1: no rational mixture"), "{text}");
+}
+
+/// a_1 z + 2 zbar = 1/2 at z = e^{i theta}/2 asks for sin theta (4 cos theta - 1) = 0: two roots more than what is
+/// tried, and it is told.
+#[test]
+fn several_harmonics_of_the_start() {
+    let found = found("x'' + (a + q*4*cos(2*t))*x - q*cos(t)", 1, 2);
+    let starts: Vec<_> = found.branches.iter().map(SoughtBranch::starts_with).collect();
+    assert_eq!((found.all, starts), (false, vec!["cos".to_owned(), "-cos".to_owned()]));
+}
+
+/// s = -omega_2 of x'' + x + e (x^3 + s x), and the amplitude of a force, which order zero does not know.
+#[test]
+fn a_parameter_that_order_zero_does_not_know() {
+    let problem =
+        |equation: &str| ProblemFile::parse(&format!("equation = {equation:?}")).unwrap().problem;
+    let settings = AveragingSettings { order: 3, ..AveragingSettings::default() };
+    let series = |equation: &str, name: &str| -> Vec<String> {
+        let found = sought(&problem(equation), name, &settings, &mut |_| true).unwrap();
+        found.branches.iter().map(|b| found.print_series(b, Style::Text)).collect()
+    };
+    assert_eq!(series("x'' + x + eps*(x^3 + s*x)", "s"), ["-3/4 - 3/128*eps - 15/4096*eps^2"]);
+    let force = series("x'' + x + eps*(x^3 - F*cos(t))", "F");
+    assert_eq!(force, ["3/4 + 3/128*eps + 3/512*eps^2", "-3/4 - 3/128*eps - 3/512*eps^2"]);
 }

@@ -4,6 +4,10 @@
 //! along order zero of the motion. With T = 2 i nu phi + conj + (D_0^2 + nu^2) rho, split as g is, p_{n-1}
 //! takes p_{n-1} phi from f_n and p_{n-1} rho from u_n; it is the ratio of f_n and phi, which has to be a real
 //! constant, the same for all unknowns.
+//!
+//! Of one unknown it may be complex: then the motion turns. Order n of g is affine in the multiple beta of
+//! w = x_0' that x_{n-1} contains, n > 1, as w solves order zero; f_n = R + beta J. So Im conj(phi) (R + beta J) = 0
+//! fixes beta where the direction of x_0 is a simple root of Im conj(phi) f_1 = 0, whose slope J is.
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
@@ -17,6 +21,9 @@ pub(super) struct Balance<E> {
     reaction: Vec<[E; 2]>,
     /// An unknown with phi_j != 0, and 1/|phi_j|^2.
     lead: (usize, E),
+    /// w, and the multiples of it in x_0, x_1, ...
+    pub(super) tangent: E,
+    pub(super) turned: Vec<E>,
     /// Whether coefficients n or n + 1 of a node depend on p_n.
     sensitive: Vec<bool>,
 }
@@ -60,7 +67,19 @@ impl<E: Clone + PartialEq> Balance<E> {
         let lead = lead.ok_or(ExpandError::NotBalanced { order: 1 })?;
         let depends = |tangent: &[E; 2]| !tangent.iter().all(|t| algebra.is_zero(t));
         let sensitive = at_one.iter().zip(&at_zero).map(|(a, b)| depends(a) || depends(b));
-        Ok(Self { values: Vec::new(), lead, sensitive: sensitive.collect(), reaction })
+        let (sensitive, tangent) = (sensitive.collect(), algebra.by_time(&x[0][0]));
+        Ok(Self { values: Vec::new(), lead, sensitive, reaction, tangent, turned: Vec::new() })
+    }
+
+    /// 2 i Im conj(phi) f, of f in the flow of the unknown that leads.
+    pub(super) fn aside<A: AmplitudeAlgebra<Element = E>>(
+        &self,
+        algebra: &A,
+        parts: &[Split<A>],
+    ) -> E {
+        let (lead, _) = self.lead;
+        let along = algebra.mul(&parts[lead].flow, &algebra.conjugate(&self.reaction[lead][0]));
+        algebra.sub(&along, &algebra.conjugate(&along))
     }
 
     /// Fixes p_{n-1}, with which the flow of order n vanishes, and changes the parts of order n.

@@ -126,7 +126,10 @@ fn normalisation<A: AmplitudeAlgebra>(
                 // The harmonics nu_j of a motion without slow change are those it was started with.
                 0 if !found.parameter.is_empty() => algebra.zero(),
                 0 => algebra.sub(x, &algebra.twice_real(&algebra.amplitude(j))),
-                _ => x.clone(),
+                _ => match found.turned.get(order) {
+                    Some(turned) => algebra.sub(x, turned),
+                    None => x.clone(),
+                },
             };
             if !algebra.is_off_resonance(j, &rest) {
                 return Err(ExpandError::Normalisation { order });

@@ -56,6 +56,8 @@ pub struct SlowFlow<E> {
     pub detuning: Vec<Vec<E>>,
     /// p_0, p_1, ... of the parameter that was sought, known to the order before the last; see [`periodic`].
     pub parameter: Vec<E>,
+    /// The part of order n of that motion with which it turns from its start; see [`periodic`].
+    pub turned: Vec<E>,
     /// The smallest divisor of every order and unknown.
     pub nearest: Vec<Nearest>,
     /// The work, order by order.
@@ -150,10 +152,12 @@ pub fn resonant<A: AmplitudeAlgebra>(
 /// the binding says it is sought, and at order one not its powers.
 ///
 /// Lindstedt's loop: the edges of the tongues of Mathieu's equation, where a = nu^2 + eps p. A policy of
-/// [`resonant`]: the same split, whose resonant part p removes.
+/// [`resonant`]: the same split, whose resonant part p removes. Where p alone does not, the motion of one unknown
+/// turns: x_{n-1} has a part beta_{n-1} x_0' of the harmonic nu beside.
 ///
 /// # Errors
-/// As [`resonant`]; [`ExpandError::NotBalanced`] at the order at which no p does.
+/// As [`resonant`]; [`ExpandError::NotBalanced`] at the order at which no p does, [`ExpandError::TurnsBySymbols`] where
+/// beta is no polynomial.
 pub fn periodic<A: AmplitudeAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
@@ -209,16 +213,8 @@ impl<A: AmplitudeAlgebra> Scheme for Resonant<'_, A> {
         }
         self.extend_delayed(n)?;
         self.assign(n);
-        let mut parts = Vec::new();
-        for j in 0..self.x.len() {
-            let g = self.right_side(j, n)?;
-            let phase = |source| ExpandError::Phase { order: n, source };
-            let split = algebra.split(j, &self.linear[j], &g);
-            if algebra.interrupted() {
-                return Err(ExpandError::Interrupted { order: n });
-            }
-            parts.push(split.map_err(phase)?);
-        }
+        let mut parts = self.parts(n)?;
+        self.turn(n, &mut parts)?;
         if let Some(balance) = &mut self.balance {
             balance.settle(&mut self.evaluator, n, &mut parts)?;
         }
@@ -289,10 +285,11 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         let Self { mut flow, mut x, mut nearest, balance, .. } = self;
         flow.iter_mut().chain(&mut x).for_each(|list| list.truncate(finished));
         nearest.retain(|near| near.order < finished);
-        let mut parameter = balance.map_or_else(Vec::new, |balance| balance.values);
-        parameter.truncate(finished - 1);
+        let (mut parameter, mut turned) =
+            balance.map_or_else(Default::default, |balance| (balance.values, balance.turned));
+        [&mut parameter, &mut turned].into_iter().for_each(|list| list.truncate(finished - 1));
         let detuning = self.detuning.to_vec();
-        SlowFlow { flow, solution: x, detuning, parameter, nearest, work }
+        SlowFlow { flow, solution: x, detuning, parameter, turned, nearest, work }
     }
 
     /// Adds the responses to the forces at order zero.
@@ -320,6 +317,59 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
 
     fn rates(&self) -> Rates<'_, A::Element> {
         Rates { flow: &self.flow, detuning: self.detuning }
+    }
+
+    /// Order n of the right sides, split.
+    fn parts(&mut self, n: usize) -> Result<Vec<Split<A>>, ExpandError> {
+        let mut parts = Vec::new();
+        for j in 0..self.x.len() {
+            let g = self.right_side(j, n)?;
+            let split = self.algebra.split(j, &self.linear[j], &g);
+            if self.algebra.interrupted() {
+                return Err(ExpandError::Interrupted { order: n });
+            }
+            parts.push(split.map_err(|source| ExpandError::Phase { order: n, source })?);
+        }
+        Ok(parts)
+    }
+
+    /// Turns the motion in order n - 1, so that a parameter balances order n; see [`balance`].
+    fn turn(&mut self, n: usize, parts: &mut Vec<Split<A>>) -> Result<(), ExpandError> {
+        let algebra = self.algebra;
+        let Some(balance) = &mut self.balance else { return Ok(()) };
+        balance.turned.resize(n, algebra.zero());
+        let (w, aside) = (balance.tangent.clone(), balance.aside(algebra, parts));
+        let one = self.x.len() == 1 && algebra.delays() == 0;
+        if !one || n == 1 || algebra.may_vanish(&aside) {
+            return Ok(());
+        }
+        self.shift(n, &w)?;
+        let turned = self.parts(n)?;
+        let Some(balance) = &mut self.balance else { return Ok(()) };
+        let slope = algebra.sub(&balance.aside(algebra, &turned), &aside);
+        if algebra.may_vanish(&slope) {
+            return Err(ExpandError::NotBalanced { order: n });
+        }
+        // Both are imaginary.
+        let square = algebra.mul(&slope, &algebra.conjugate(&slope));
+        let inverse = algebra.reciprocal(&square).filter(|_| algebra.as_constant(&aside).is_some());
+        let inverse = inverse.ok_or(ExpandError::TurnsBySymbols { order: n })?;
+        let beta = algebra.mul(&algebra.mul(&aside, &slope), &inverse);
+        balance.turned[n - 1] = algebra.mul(&beta, &w);
+        let rest = algebra.sub(&balance.turned[n - 1], &w);
+        self.shift(n, &rest)?;
+        *parts = self.parts(n)?;
+        Ok(())
+    }
+
+    /// Adds u, of the harmonic nu, to x_{n-1}.
+    fn shift(&mut self, n: usize, u: &A::Element) -> Result<(), ExpandError> {
+        self.amend(0, n - 1, u, &self.algebra.zero())?;
+        self.velocity[0][n] = self.rate_of_change(&self.x[0], n);
+        self.evaluator.forget_from(n - 1, &vec![true; self.sensitive.len()]);
+        self.assign(n - 1);
+        self.assign(n);
+        Ok(())
     }
 
     /// Order n of D f for a real series f.

@@ -23,6 +23,9 @@ const DELAY: &str = "`lindstedt derive` without --mode and --unknown averages a 
 const STRONG_DELAY: &str = "with a factor eps, eps*x(t - T), a delay is averaged; of one unknown `lindstedt derive --unknown \
      NAME` finds the Hopf points of a parameter, and `lindstedt simulate` takes it as it is";
 
+/// What has the motions of which a sought parameter has no series.
+const ALL: &str = "`lindstedt derive` without --unknown has the slow flow of all motions";
+
 /// What to do with the irrational frequency of a force.
 const FRACTION: &str =
     "a fraction near it, with the difference as eps*sigma; `lindstedt simulate` takes it as it is";
@@ -73,6 +76,7 @@ impl Refusal for ExpandError {
                 "damping, delays and nonlinear terms need a factor of the small parameter: eps*x', \
                  eps*x(t - T); `lindstedt simulate` takes the equation as it is",
             ),
+            Self::TurnsBySymbols { .. } => (NoAnswer, "no-expansion", "--set them"),
             Self::NegativeStiffness => (
                 NoAnswer,
                 "no-expansion",
@@ -112,6 +116,8 @@ impl Refusal for ResonanceError {
             Self::NotSought { .. } => {
                 (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
             }
+            Self::NoStart { .. } => (Usage, "no-value-set", "--set NAME=VALUE"),
+            Self::Mixture { .. } | Self::Turns { .. } => (NoAnswer, "no-expansion", ALL),
             Self::SoughtOfSeveral { .. } | Self::ForcedMode => (NoAnswer, "no-method", ""),
             Self::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
             Self::InternalResonance { .. } => {

@@ -430,7 +430,7 @@ fn no_frame(why: NoFrame) -> Error {
     let (message, hint) = match why {
         NoFrame::NoForce => (
             "without a force there is no response: the phase of a steady state is free",
-            "`lindstedt evaluate` has the periodic motions, `derive --normalisation free` their slow flow",
+            "`lindstedt derive --normalisation free` has the slow flow, `simulate` the motions; of one unknown `evaluate` has the periodic ones",
         ),
         _ => (
             "forces of different detunings act on the same amplitudes: these are steady in no frame, they beat",

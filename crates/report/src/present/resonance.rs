@@ -5,7 +5,7 @@ use super::{Present, both, equation};
 use crate::Document;
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::derivation::resonance::{
-    NormalMode, Polar, Sought, Terms, Unit, print_name, print_turns,
+    NormalMode, Polar, Sought, SoughtBranch, Terms, Unit, print_name, print_turns,
 };
 use lindstedt::{Answer, Averaged, SlowFlow};
 
@@ -37,13 +37,26 @@ impl Present for Answer<Sought> {
         let mut page =
             Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
         let (name, nu) = (&found.parameter, &found.frequency);
+        let turns = found.branches.iter().any(SoughtBranch::turns);
+        let own = if turns { "but multiples of x_0' no part" } else { "no part" };
         page = page.words(format!(
-            "Sought: {name}, for which x stays periodic with the frequency {nu}; corrections have no part of that frequency."
+            "Sought: {name}, for which x stays periodic with the frequency {nu}; corrections have {own} of that frequency."
         ));
+        if !found.all {
+            page = page.words(
+                "Motions that start with cos or sin alone; other mixtures were not tried."
+                    .to_owned(),
+            );
+        }
         for branch in &found.branches {
             page = page.formula(both(|style| {
                 format!("{} = {}", print_name(name, style), found.print_series(branch, style))
             }));
+            if branch.origin != "0" {
+                let origin = &branch.origin;
+                page = page
+                    .words(format!("Below, t is counted from the time {origin} of the equation."));
+            }
             for (n, terms) in branch.solution.iter().enumerate() {
                 page = page.formula(both(|style| {
                     let x = shortened(found.print_motion(terms, style), style);
