@@ -147,6 +147,14 @@ fn files_at_low_orders_and_at_order_10() {
     }
 }
 
+/// A force at a fixed frequency beside a resonance is off resonance once eps is small: no symbol (omega - Omega)/eps is put in,
+/// of a root in units of which it is 24/25 and of several unknowns.
+#[test]
+fn a_fixed_frequency_beside_a_resonance_is_not_detuned() {
+    slopes("x''+2*x+eps*(x'/5+x^3)-eps*cos(24/25*sqrt(2)*t)", 2..=2, &[]);
+    slopes("x''+x+eps*(x^3+x'/5)-eps*cos(24/25*t);y''+4*y+eps*(y'/5+x*y)", 1..=1, &[]);
+}
+
 /// Amplitudes other than one in problems whose frequency they scale, free amplitudes of built-in
 /// problems, and a time scale.
 #[test]

@@ -244,6 +244,39 @@ pub fn slow_flow(
     settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
+    of_problem(problem, settings, true, observer)
+}
+
+/// As [`slow_flow`], with a force beside a resonance at the frequency that it has, however small the small parameter
+/// becomes: sigma = (omega - Omega)/eps grows without bound then, and no order of the detuned flow is small beside the one
+/// before.
+///
+/// # Errors
+/// As there.
+///
+/// ```
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow_undetuned};
+/// use lindstedt_problem_file::ProblemFile;
+/// let text = "equation = \"x'' + x + eps*x^3 = eps*cos(24/25*t)\"";
+/// let problem = ProblemFile::parse(text)?.problem;
+/// let found = slow_flow_undetuned(&problem, &AveragingSettings::default(), &mut |_| true)?;
+/// assert!(found.system.beside.is_none() && found.system.force() == (24, 25));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn slow_flow_undetuned(
+    problem: &Problem,
+    settings: &AveragingSettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<SlowFlow, Error> {
+    of_problem(problem, settings, false, observer)
+}
+
+fn of_problem(
+    problem: &Problem,
+    settings: &AveragingSettings,
+    detune: bool,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<SlowFlow, Error> {
     let card = |name: &str| problem.parameters.iter().any(|card| card.name == *name);
     let known = |name: &String| card(name) || **name == *problem.small;
     if let Some(name) = settings.parameters.keys().find(|name| !known(name)) {
@@ -256,7 +289,7 @@ pub fn slow_flow(
     }
     equations.iter().try_for_each(|e| check_delays(e, &settings.parameters))?;
     let cards = |name: &str| value(problem, &settings.parameters, name);
-    let system = System::of(&equations, &settings.parameters, &cards, Names(problem), true)?;
+    let system = System::of(&equations, &settings.parameters, &cards, Names(problem), detune)?;
     let mut job = flow::Job { problem, system, settings };
     if !job.system.is_exact() {
         return enclosed::derived(&job, observer);

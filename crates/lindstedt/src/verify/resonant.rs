@@ -4,7 +4,7 @@ use super::sampled::{largest_gaps, sample_times, states};
 use super::{Comparison, Verify};
 use crate::{Error, Oscillator, Progress, SlowFlow};
 use lindstedt_derivation::averaging::AveragingSettings;
-use lindstedt_derivation::resonance::{Motion, slow_flow};
+use lindstedt_derivation::resonance::{Motion, slow_flow_undetuned};
 use lindstedt_derivation::{DerivationError, all_values};
 use lindstedt_equation::Expression;
 use lindstedt_expand::ExpandError;
@@ -59,7 +59,7 @@ impl Resonant {
         }
         let order = question.order;
         let asked = AveragingSettings { order, parameters, ..AveragingSettings::default() };
-        let flow = slow_flow(problem, &asked, observer)?;
+        let flow = slow_flow_undetuned(problem, &asked, observer)?;
         if flow.order < order {
             return Err(ExpandError::Interrupted { order: flow.order }.into());
         }
