@@ -3,7 +3,7 @@
 use super::{Present, parameter, stability_word, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
-use lindstedt::respond::{Change, Corner, Estimate, Point, Response, State, States};
+use lindstedt::respond::{Change, Corner, Destination, Estimate, Point, Response, State, States};
 use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number, Standing};
 
@@ -147,6 +147,17 @@ fn jumps(value: &Response, name: &str) -> Option<Document> {
     )
 }
 
+/// Where a start state goes, in words.
+fn leads_to(to: &Destination) -> String {
+    let words = match (to.fate, to.state) {
+        (_, Some(state)) => format!("state {} of the table", state + 1),
+        ("steady", None) => "a steady state beyond the box".to_owned(),
+        ("moving", None) => "no steady state: the amplitudes still move".to_owned(),
+        _ => "away".to_owned(),
+    };
+    words + if to.decided { "" } else { "; starts that differ by terms of order eps go elsewhere" }
+}
+
 fn corners(value: &Response) -> impl Iterator<Item = (&'static str, &Corner)> {
     let list = |name, list| std::iter::repeat(name).zip(list);
     list("cusp", &value.cusps).chain(list("Bogdanov-Takens point", &value.bogdanov_takens))
@@ -273,17 +284,9 @@ impl Present for Answer<Response> {
         }
         let found = value.states.first();
         lines.extend(found.map(|states| ("steady states".into(), proof(states).into())));
-        if let Some(to) = &value.leads_to {
-            let words = match (to.fate, to.state) {
-                (_, Some(state)) => format!("state {} of the table", state + 1),
-                ("steady", None) => "a steady state beyond the box".to_owned(),
-                ("moving", None) => "no steady state: the amplitudes still move".to_owned(),
-                _ => "away".to_owned(),
-            };
-            let doubt = "; starts that differ by terms of order eps go elsewhere";
-            let words = words + if to.decided { "" } else { doubt };
-            lines.push(("the start leads to".into(), words.into()));
-        }
+        let to =
+            value.leads_to.as_ref().map(|to| ("the start leads to".into(), leads_to(to).into()));
+        lines.extend(to);
         let page = Document::titled(title(self)).lines(lines);
         found.into_iter().fold(page, |page, found| page.table(states(value, found)))
     }
