@@ -68,7 +68,9 @@ pub fn largest_lyapunov_exponent<R: Real>(
 }
 
 /// [`largest_lyapunov_exponent`] of several systems from one start, in order; in doubles those that differ in their
-/// numbers alone are followed side by side, with the exponents that each has alone.
+/// numbers alone are followed side by side, with the exponents that each has alone. The observer is told how many
+/// intervals were followed; systems too many for one side by side follow one another, and the exponents found before it
+/// breaks off stand.
 pub fn largest_lyapunov_exponents<R: Real>(
     systems: &[&System<R>],
     time: &R::Element,
@@ -78,7 +80,7 @@ pub fn largest_lyapunov_exponents<R: Real>(
 ) -> Vec<Result<Option<LyapunovExponent>, SimulateError>> {
     let mut all: Vec<_> =
         systems.iter().map(|system| Growth::new(*system, time, state, settings)).collect();
-    let mut stopped = false;
+    let (mut stopped, mut followed) = (false, 0u32);
     for lanes in all.chunks_mut(R::LANES) {
         let mut running: Vec<_> = lanes.iter_mut().filter_map(|one| one.as_mut().ok()).collect();
         let flows: Vec<_> = running.iter().map(|one| &one.flow).collect();
@@ -101,13 +103,20 @@ pub fn largest_lyapunov_exponents<R: Real>(
                     one.hear(told, interval > settings.transient);
                 }
             }
-            stopped = observer(interval).is_break();
+            if running.iter().any(|one| one.ended.is_none()) {
+                followed = followed.saturating_add(1);
+                stopped = observer(followed).is_break();
+            }
+        }
+        if stopped {
+            for one in running {
+                one.ended.get_or_insert(Ok(None));
+            }
         }
     }
     let interval = |system: &System<R>| system.real.to_f64(&settings.interval);
     let exponent = |(one, system): (Result<Growth<'_, R>, _>, &&System<R>)| match one? {
         Growth { ended: Some(ended), .. } => ended,
-        _ if stopped => Ok(None),
         one => one.exponent(interval(system)),
     };
     all.into_iter().zip(systems).map(exponent).collect()

@@ -91,6 +91,18 @@ pub struct Tangency {
     pub periods: u32,
 }
 
+/// A minimum of the excess over orbits of a fundamental domain.
+#[derive(Clone, Copy)]
+struct Minimum {
+    phase: f64,
+    margin: f64,
+    /// How far below the orbits followed a parabola through them may go: a quarter of the larger rise beside the least.
+    unseen: f64,
+}
+
+/// A value of the parameter with the minima there.
+type Looked = (f64, Vec<Minimum>);
+
 /// A linearised system with its saddle.
 type Place = (System<Doubles>, Saddle);
 
@@ -206,19 +218,23 @@ impl Homoclinic<'_> {
         nearest.map(|nearest| nearest.phase).ok_or(SimulateError::NoTangency { value })
     }
 
-    /// The smallest `sign` excess, and the phases of its minima, the smallest first.
-    fn margin(
+    /// The minima of `sign` excess over the orbits followed, the smallest first; there is one.
+    fn minima(
         &self,
         (value, count, sign): (f64, u32, f64),
         tick: &Tick<'_>,
-    ) -> Result<(f64, Vec<f64>), SimulateError> {
+    ) -> Result<Vec<Minimum>, SimulateError> {
         let returns = self.returns(value, count, tick)?;
         let at = |k: usize| sign * returns[k % returns.len()].excess;
         let below = |k: &usize| at(*k) <= at(*k + returns.len() - 1) && at(*k) <= at(*k + 1);
-        let mut minima: Vec<usize> = (0..returns.len()).filter(below).collect();
-        minima.sort_by(|a, b| at(*a).total_cmp(&at(*b)));
-        let least = minima.first().ok_or(SimulateError::NoTangency { value })?;
-        Ok((at(*least), minima.iter().map(|k| returns[*k].phase).collect()))
+        let minimum = |k: usize| {
+            let margin = at(k);
+            let rise = at(k + returns.len() - 1).max(at(k + 1)) - margin;
+            Minimum { phase: returns[k].phase, margin, unseen: rise / 4.0 }
+        };
+        let mut minima: Vec<_> = (0..returns.len()).filter(below).map(minimum).collect();
+        minima.sort_by(|a, b| a.margin.total_cmp(&b.margin));
+        if minima.is_empty() { Err(SimulateError::NoTangency { value }) } else { Ok(minima) }
     }
 
     /// The tangency between two values of the parameter, at one of which all of `count` orbits
@@ -234,38 +250,56 @@ impl Homoclinic<'_> {
         tick: &Tick<'_>,
     ) -> Result<Tangency, SimulateError> {
         for sign in [1.0, -1.0] {
-            let margins =
-                (self.margin((low, count, sign), tick)?, self.margin((high, count, sign), tick)?);
-            let (mut pure, mut mixed) = ((low, margins.0), (high, margins.1));
-            if mixed.1.0 > 0.0 {
+            let mut pure = (low, self.minima((low, count, sign), tick)?);
+            let mut mixed = (high, self.minima((high, count, sign), tick)?);
+            if mixed.1[0].margin > 0.0 {
                 (pure, mixed) = (mixed, pure);
             }
-            if !(pure.1.0 > 0.0 && mixed.1.0 < 0.0) {
+            if !(pure.1[0].margin > 0.0 && mixed.1[0].margin < 0.0) {
                 continue;
             }
             for _ in 0..6 {
                 let middle = (pure.0 + mixed.0) / 2.0;
-                let margin = self.margin((middle, count, sign), tick)?;
-                let end = if margin.0 > 0.0 { &mut pure } else { &mut mixed };
-                *end = (middle, margin);
+                let minima = self.minima((middle, count, sign), tick)?;
+                let end = if minima[0].margin > 0.0 { &mut pure } else { &mut mixed };
+                *end = (middle, minima);
             }
-            let direction = (mixed.0 - pure.0).signum();
-            let (value, (_, phases)) = if pure.1.0 < -mixed.1.0 { pure } else { mixed };
-            // Of extrema that are almost equal the orbits followed do not tell whose tangency is the first.
-            let (mut found, mut failed): (Vec<Tangency>, _) = (Vec::new(), None);
-            for phase in phases.into_iter().take(2) {
-                match self.tangency(value, phase, tick) {
-                    Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
-                    Err(failure) => failed = failed.or(Some(failure)),
-                    Ok(tangency) => found.push(tangency),
-                }
-            }
-            found.retain(|tangency| (low..=high).contains(&tangency.value));
-            let place = |tangency: &Tangency| direction * tangency.value;
-            let first = found.into_iter().min_by(|a, b| place(a).total_cmp(&place(b)));
-            return first.ok_or(failed.unwrap_or(SimulateError::NoTangency { value }));
+            return self.first_of(pure, mixed, tick);
         }
         Err(SimulateError::NoTangency { value: low })
+    }
+
+    /// The first tangency between values that are near one another. Of minima that are almost equal the orbits followed do
+    /// not tell whose tangency is the first.
+    fn first_of(
+        &self,
+        pure: Looked,
+        mixed: Looked,
+        tick: &Tick<'_>,
+    ) -> Result<Tangency, SimulateError> {
+        let change = pure.1[0].margin - mixed.1[0].margin;
+        let (middle, width) = ((pure.0 + mixed.0) / 2.0, (mixed.0 - pure.0).abs());
+        let direction = mixed.0 - pure.0;
+        let (value, minima) = if pure.1[0].margin < -mixed.1[0].margin { pure } else { mixed };
+        let least = minima[0];
+        // What the orbits followed do not see of the minimum moves its tangency by as much as the margin changes over.
+        let reach = width / 2.0 + 2.0 * width * (1.0 + least.unseen / change);
+        let is_near = |tangency: &Tangency| (tangency.value - middle).abs() <= reach;
+        let first = self.tangency(value, least.phase, tick)?;
+        if !is_near(&first) {
+            return Err(SimulateError::NoTangency { value });
+        }
+        let equal = |other: &&Minimum| {
+            other.margin - least.margin <= change + least.unseen.max(other.unseen)
+        };
+        let Some(other) = minima.get(1).filter(equal) else { return Ok(first) };
+        match self.tangency(value, other.phase, tick) {
+            Err(SimulateError::Stopped) => Err(SimulateError::Stopped),
+            Ok(other) if is_near(&other) && direction * (other.value - first.value) < 0.0 => {
+                Ok(other)
+            }
+            _ => Ok(first),
+        }
     }
 
     /// The tangency near a value of the parameter and a phase: Newton's method for G = 0 and

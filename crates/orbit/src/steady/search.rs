@@ -93,6 +93,9 @@ pub(super) fn zeros_with_moduli(
     let mut search = Search { system, cells, limits, zeros, open, boxes: 0 };
     let stopped = !search.run(region);
     let meets = |zero: &Zero| meet(&zero.enclosure, region).is_some();
+    // Boxes that were open before a zero was proved on a box around them.
+    let known = |part: &Region| search.zeros.iter().any(|zero| is_in(part, &zero.unique_within));
+    search.open.retain(|part| !known(part));
     search.zeros.retain(meets);
     let undecided = joined(search.open);
     let limit = Interval::point(limits.modulus.unwrap_or(f64::INFINITY));
@@ -160,12 +163,8 @@ impl Search<'_> {
             }
             let next = match krawczyk(self.system, &part) {
                 Verdict::None => continue,
-                Verdict::One(_) => {
-                    if !self.record(&part) {
-                        self.open.push(part);
-                    }
-                    continue;
-                }
+                Verdict::One(_) if self.record(&part) => continue,
+                Verdict::One(within) => within,
                 Verdict::Within(within) => within,
                 Verdict::Open => part.clone(),
             };
@@ -209,10 +208,14 @@ impl Search<'_> {
 
     /// Adds a zero unless it is known; false where that is not decided. A box with one zero knows all that lie in it.
     fn keep(&mut self, zero: Zero) -> bool {
-        for known in &self.zeros {
+        for known in &mut self.zeros {
             let same = is_in(&zero.enclosure, &known.unique_within)
                 || is_in(&known.enclosure, &zero.unique_within);
             if same {
+                // A proof on a tiny box leaves those around it open, which one on a larger box closes.
+                if is_in(&known.unique_within, &zero.unique_within) {
+                    *known = zero;
+                }
                 return true;
             }
             if meet(&zero.enclosure, &known.enclosure).is_some() {
@@ -236,12 +239,15 @@ impl Search<'_> {
         let near = |(x, side): (&f64, &Interval)| {
             (x - side.middle()).abs() <= 0.6 * side.width() + rounding(x)
         };
-        let known = |zero: &Zero| zero.unique_within.iter().zip(&at).all(|(x, a)| x.contains(*a));
+        let width = |(x, side): (&f64, &Interval)| 1.2 * side.width() + 4.0 * rounding(x);
+        let widths: Vec<f64> = at.iter().zip(part).map(width).collect();
+        // Known, and on no smaller box than is tried.
+        let wide =
+            |(x, (a, width)): (&Interval, (&f64, &f64))| x.contains(*a) && x.width() >= *width;
+        let known = |zero: &Zero| zero.unique_within.iter().zip(at.iter().zip(&widths)).all(wide);
         if !at.iter().zip(part).all(near) || self.zeros.iter().any(known) {
             return;
         }
-        let width = |(x, side): (&f64, &Interval)| 1.2 * side.width() + 4.0 * rounding(x);
-        let widths: Vec<f64> = at.iter().zip(part).map(width).collect();
         if let Some(zero) = zero_near(self.system, &at, &widths) {
             self.keep(zero);
         }

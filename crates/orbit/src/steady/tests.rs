@@ -588,3 +588,55 @@ fn coefficients_within_a_radius() {
     }
     assert!(!found(&flow(1e-1, 1_000_000)).is_proved());
 }
+
+/// x'' + x + eps (x'/5 + x^3/2 - x y^2/2) = 0, y'' + y + eps (y^3/3 - x^2 y) = 2 eps cos (1 + eps) t: the states lie on the
+/// axes, where boxes are cut, and one of them is found twice.
+#[test]
+fn states_on_cuts_that_are_found_twice_are_one() {
+    let x = vec![
+        term(&[1, 0, 0, 0], &[], (-1, 10), (-1, 1)),
+        term(&[2, 1, 0, 0], &[], (0, 1), (3, 4)),
+        term(&[1, 0, 1, 1], &[], (0, 1), (-1, 2)),
+        term(&[0, 1, 2, 0], &[], (0, 1), (-1, 4)),
+    ];
+    let y = vec![
+        term(&[0, 0, 1, 0], &[], (0, 1), (-1, 1)),
+        term(&[0, 0, 2, 1], &[], (0, 1), (1, 2)),
+        term(&[1, 1, 1, 0], &[], (0, 1), (-1, 1)),
+        term(&[2, 0, 0, 1], &[], (0, 1), (-1, 2)),
+        term(&[0, 0, 0, 0], &[], (0, 1), (-1, 2)),
+    ];
+    let flow = Flow::of_complex(&[x, y], &[]);
+    for reach in [1.25, 1.45, 1.5, 1.55] {
+        let limits = Limits { modulus: Some(reach), ..Limits::default() };
+        let found = all_states(&flow, &[], reach, &limits).unwrap();
+        let states: Vec<_> = found.zeros.iter().map(Zero::middle).collect();
+        println!("{} {states:?} {:?}", found.boxes, found.undecided);
+        assert!(found.is_proved(), "{reach}");
+        assert_eq!(found.zeros.len(), 2);
+        let free = |w: f64| w * w * w / 2.0 - w - 0.5;
+        assert!(states.iter().all(|w| w[0].hypot(w[1]) < 1e-14 && free(w[2]).abs() < 1e-13));
+    }
+}
+
+/// x'' + x + eps (x'/10 + x^3/3 + x^2 y) = 0, y'' + 9 y + eps (y'/10 + y^3 + x^3) = 2 eps cos (3 + eps/2) t.
+#[test]
+fn states_of_two_modes_one_to_three_are_all_found() {
+    let x = vec![
+        term(&[1, 0, 0, 0], &[], (-1, 20), (-1, 6)),
+        term(&[2, 1, 0, 0], &[], (0, 1), (1, 2)),
+        term(&[0, 2, 1, 0], &[], (0, 1), (1, 2)),
+    ];
+    let y = vec![
+        term(&[0, 0, 1, 0], &[], (-1, 20), (-1, 2)),
+        term(&[0, 0, 2, 1], &[], (0, 1), (1, 2)),
+        term(&[3, 0, 0, 0], &[], (0, 1), (1, 6)),
+        term(&[0, 0, 0, 0], &[], (0, 1), (-1, 6)),
+    ];
+    let flow = Flow::of_complex(&[x, y], &[]);
+    let limits = Limits { modulus: Some(16.0), ..Limits::default() };
+    let found = all_states(&flow, &[], 16.0, &limits).unwrap();
+    println!("{} {} {:?}", found.boxes, found.zeros.len(), found.undecided);
+    assert!(found.is_proved());
+    assert_eq!(found.zeros.len(), 21);
+}

@@ -11,7 +11,8 @@ pub(super) type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>)
 
 /// Sums of products in progress: a list, and where words stand in it.
 struct Sum<E> {
-    /// One more than the place of a word, 0 where there is none, from where its hash leads: twice as many slots as words.
+    /// One more than the place of a word, 0 where there is none, from where its hash leads: at least twice as many
+    /// slots as words, a power of two.
     places: Vec<u32>,
     terms: Terms<E>,
 }
@@ -23,10 +24,8 @@ impl<E> Sum<E> {
 
     /// The slot of a word: its own or an empty one.
     fn slot(&self, word: Word) -> usize {
-        let folded = (word as u64).wrapping_mul(0xf135_7aea_2e62_a9c5) ^ (word >> 64) as u64;
-        let hash = folded.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
         let mask = self.places.len() - 1;
-        let mut slot = hash as usize & mask;
+        let mut slot = home(word, self.places.len().ilog2());
         loop {
             match self.places[slot].checked_sub(1) {
                 Some(place) if self.terms[place as usize].0 != word => slot = (slot + 1) & mask,
@@ -52,6 +51,14 @@ impl<E> Sum<E> {
         }
         &mut self.terms[self.places[slot] as usize - 1].1
     }
+}
+
+/// Where a word is looked for first among 2^bits slots. Every bit of either half changes the top bits of the products,
+/// the highest bits of a half no others.
+pub(super) fn home(word: Word, bits: u32) -> usize {
+    let low = (word as u64).wrapping_mul(0xf135_7aea_2e62_a9c5);
+    let high = ((word >> 64) as u64).wrapping_mul(0xd6e8_feb8_6659_fd93);
+    ((low ^ high.rotate_left(32)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - bits)) as usize
 }
 
 impl<S: Scalars> Amplitudes<S> {

@@ -187,3 +187,17 @@ fn resonances_and_near_misses_are_named() {
     }
     assert_eq!(refused(q(21, 20), 1), None);
 }
+
+/// Words that differ in exponents anywhere are spread over the slots as if at random, of which 1 - e^(-1/2) were hit.
+#[test]
+fn words_that_differ_high_in_a_half_have_homes_of_their_own() {
+    for places in [[0, 8], [48, 56], [0, 64], [48, 112], [56, 120], [96, 112], [112, 120]] {
+        let word = |k: u32| {
+            places.iter().zip([k / 32, k % 32]).fold(0, |w, (p, e)| w + (i128::from(e) << p))
+        };
+        let mut homes: Vec<usize> = (0..1024).map(|k| ring::home(word(k), 11)).collect();
+        homes.sort_unstable();
+        homes.dedup();
+        assert!(homes.len() > 500, "{places:?} {}", homes.len());
+    }
+}

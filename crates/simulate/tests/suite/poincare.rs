@@ -178,3 +178,36 @@ fn exponents_side_by_side_are_those_alone() {
         assert_eq!(found, alone);
     }
 }
+
+/// More systems than fit side by side, broken off among the last: what was found stands, intervals are counted on, and
+/// nobody is asked of one that ended.
+#[test]
+fn exponents_found_before_a_stop_stand() {
+    let model = stick_slip().linearised();
+    let given = parameters(&[("a", "1.1"), ("b", "0.9"), ("beta", "0"), ("gamma", "0.6")]);
+    let system = model.compile(Doubles, &given).unwrap();
+    let escaping = parameters(&[("a", "1.1"), ("b", "-0.9"), ("beta", "0"), ("gamma", "2")]);
+    let escaping = model.compile(Doubles, &escaping).unwrap();
+    let integration = Settings::for_digits(12);
+    let settings = LyapunovSettings { interval: PI, transient: 1, averaged: 3, integration };
+    let start = [0.11, 0.05];
+    let mut told = Vec::new();
+    let observer = &mut |interval| {
+        told.push(interval);
+        if interval < 6 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let found = largest_lyapunov_exponents(&[&system; 10], &0.0, &start, &settings, observer);
+    assert!(found[..8].iter().all(|one| matches!(one, Ok(Some(_)))), "{found:?}");
+    assert_eq!(found[8..], [Ok(None), Ok(None)]);
+    assert_eq!(told, [1, 2, 3, 4, 5, 6]);
+
+    let settings = LyapunovSettings { transient: 1000, ..settings };
+    let mut asked = 0;
+    let observer = &mut |interval| {
+        asked = interval;
+        ControlFlow::Continue(())
+    };
+    let alone = largest_lyapunov_exponent(&escaping, &0.0, &start, &settings, observer);
+    let Err(SimulateError::Escape { time, .. }) = alone else { panic!("{alone:?}") };
+    assert_eq!(f64::from(asked), (time / PI).floor());
+}

@@ -193,6 +193,22 @@ fn the_damped_duffing_oscillator() {
     let threshold = 4.0 * (PI / 2.0).cosh() / (3.0 * 2f64.sqrt() * PI);
     println!("{tangency:?} {threshold}");
     assert!((tangency.value - threshold).abs() < 1e-3);
+    // The order of the ends does not matter.
+    assert_eq!(homoclinic.first_tangency((0.8, 0.7), 24, &go_on), Ok(tangency));
+    // A force of half the period, followed by both periods: a fundamental domain has one extremum, or two equal ones.
+    let double = Expression::Time.apply(lindstedt_equation::Function::Cos).pow(2)
+        * Expression::from(2)
+        - Expression::from(1);
+    let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
+    let small = Expression::Small * (v - Expression::parameter("F") * double);
+    let model = Model::second_order(&(Expression::ACCELERATION - x.clone() + x.pow(3) + small));
+    let model = &model.unwrap().with_small("eps");
+    let values = [PI, 2.0 * PI].map(|period| {
+        let homoclinic = Homoclinic { model, parameters, name: "F", period, side, guess };
+        homoclinic.first_tangency((1.85, 1.7), 24, &go_on).unwrap()
+    });
+    println!("{values:?}");
+    assert!((values[0].value - values[1].value).abs() < values[0].error + values[1].error);
 }
 
 /// Every long computation stops at the end of the step in which the tick breaks off.
