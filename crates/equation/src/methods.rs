@@ -218,7 +218,9 @@ fn averaging(
     };
     let of_frequency = |force: &Forcing| {
         let frequency = force.frequency.as_ref()?;
-        if frequency.find(&is_irrational).is_some() && has_ratio(frequency).is_none() {
+        // The frequencies of coupled unknowns are not those of their rows: the derivation, which knows them, judges.
+        let alone = problem.others.is_empty();
+        if alone && frequency.find(&is_irrational).is_some() && has_ratio(frequency).is_none() {
             return Some(Reason::IrrationalRatio(force.term.clone()));
         }
         // 2 - omega_1 beside a force of omega_1 is a combination of independent frequencies.

@@ -155,6 +155,15 @@ fn a_fixed_frequency_beside_a_resonance_is_not_detuned() {
     slopes("x''+x+eps*(x^3+x'/5)-eps*cos(24/25*t);y''+4*y+eps*(y'/5+x*y)", 1..=1, &[]);
 }
 
+/// Modes of frequencies sqrt(2) and 2 sqrt(2), with a force of sqrt(2): the ratio to sqrt(5), that of a row, does not count.
+#[test]
+fn a_root_that_is_the_frequency_of_a_mode() {
+    let modes = "x''+5*x-3*y+eps*(x^3+x'/5)-eps*cos(sqrt(2)*t);y''+5*y-3*x+eps*y'/5";
+    slopes(modes, 1..=1, &[]);
+    let other = run(&[&modes.replace("sqrt(2)", "sqrt(3)")]);
+    assert!(String::from_utf8_lossy(&other.stderr).contains("the frequency of a force"));
+}
+
 /// Amplitudes other than one in problems whose frequency they scale, free amplitudes of built-in
 /// problems, and a time scale.
 #[test]

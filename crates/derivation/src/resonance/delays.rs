@@ -8,7 +8,7 @@
 //! coefficients that grow like 2^k with alternating signs. Where theta is a number of quarters of a turn they are numbers.
 
 use super::forces::{Angles as Named, divisor, named, quarters, wave_names};
-use super::{System, Terms};
+use super::{System, Terms, Unit};
 use crate::averaging::constant;
 use lindstedt_algebra::Ring;
 use lindstedt_equation::Expression;
@@ -59,16 +59,22 @@ type Constant<'a, S> =
     dyn Fn(&Amplitudes<S>, &Expression) -> Option<AmplitudeElement<<S as Scalars>::Element>> + 'a;
 
 impl Delays {
-    /// Of equations, with the generators of rates as expressions, 1 left out.
+    /// Of equations, with the generators of rates as expressions, 1 left out, and the unit.
     pub(super) fn of<E>(
         equations: &[Expression],
         rates: &Rates<E>,
         generators: &[Expression],
+        unit: Option<&Unit>,
     ) -> Result<Self, ExpandError> {
         let times = Excitation::of(&Expression::Sum(equations.to_vec()))?.delays;
         let mut bases: Vec<(Expression, Rational)> = Vec::new();
         let mut delays = Vec::new();
-        for time in times {
+        // A root stands in a delay and in a frequency: a delay of sqrt(2) by a frequency of sqrt(2) is an angle of 2.
+        let plain = |e: Expression| match unit {
+            Some(unit) => unit.with_square(e),
+            None => e,
+        };
+        for time in times.into_iter().map(plain) {
             let of = |(first, _): &(Expression, _)| ratio(&expand(&time)?, &expand(first)?);
             let known = bases.iter().map(of).enumerate().find_map(|(k, ratio)| Some((k, ratio?)));
             let (base, multiple) = known.unwrap_or_else(|| {
@@ -91,6 +97,7 @@ impl Delays {
                 let named = generator.checked_sub(1).map(|k| generators[k].clone());
                 let angle = named.map_or(number.clone(), |named| number.clone() * named);
                 let angle = angle.multiplied_out().unwrap_or(angle).canonical();
+                let angle = plain(angle);
                 let quarters = quarters(&angle).and_then(|n| n.to_i64());
                 turns.push(Turn { base, generator, q: q.clone(), angle, quarters });
             }

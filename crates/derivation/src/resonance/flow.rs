@@ -120,7 +120,7 @@ impl Job<'_> {
         let (system, settings) = (&self.system, self.settings);
         let names: Vec<&str> = system.symbols.iter().map(String::as_str).collect();
         let equations = compiled_form(system);
-        let delays = Delays::of(&equations, &rates, generators)?;
+        let delays = Delays::of(&equations, &rates, generators, system.unit.as_deref())?;
         let algebra = Amplitudes::turning(scalars, rates.clone(), &names, delays.phases());
         let count = names.len() + delays.phases();
         let unit = system.unit.iter().map(|unit| &*unit.name).find(|unit| names.contains(unit));

@@ -59,7 +59,7 @@ pub struct NormalMode {
     pub ratios: Vec<Rational>,
     /// P of x = P q, by rows, the shape of the mode first.
     pub shapes: Matrix,
-    /// Names without a value.
+    /// Names without a value, and the root `sqrt(d)` of a number that coefficients contain, to the power 0 or 1.
     pub symbols: Vec<String>,
     /// The highest order derived.
     pub order: usize,
@@ -95,7 +95,10 @@ pub fn normal_mode(
     if !prepared.forces.is_empty() {
         return Err(ResonanceError::ForcedMode.into());
     }
-    let unit = prepared.unit.filter(|unit| unit.square.is_none());
+    let (unit, root): (Option<Unit>, Option<Unit>) = match prepared.unit {
+        Some(unit) if unit.square.is_some() => (None, Some(unit)),
+        unit => (unit, None),
+    };
     let modes = spectrum(&prepared.mass, &prepared.stiffness);
     let modes = modes.map_err(|error| match (error, &unit) {
         (ResonanceError::NoRationalForm, Some(unit)) => unit.unset(),
@@ -147,7 +150,7 @@ pub fn normal_mode(
     let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
     let rates = found.flow[0].iter().map(|f| in_amplitude(&terms(f))).collect::<Vec<_>>();
     let solution = (0..count).map(|i| unknown(&modes, i, &found, &terms)).collect();
-    Ok(NormalMode {
+    let mut mode = NormalMode {
         problem: problem.clone(),
         mode,
         unit,
@@ -160,7 +163,12 @@ pub fn normal_mode(
         growth: rates.into_iter().map(|[growth, _]| listed(growth)).collect(),
         solution,
         checked_orders,
-    })
+    };
+    if let Some(root) = root {
+        root.put_in(&mode.symbols, 1, mode.frequency_squared.iter_mut().chain(&mut mode.growth));
+        root.put_in(&mode.symbols, 3, mode.solution.iter_mut().flatten());
+    }
+    Ok(mode)
 }
 
 /// The equations divided by nu^2, in the time nu t, nu in multiples of the unit.

@@ -161,7 +161,7 @@ pub fn sought(
         return Err(Error::Unset { problem, name: name.clone() });
     }
     if !system.is_exact() || system.unit.is_some() {
-        return Err(modes_refused(&system.squares).into());
+        return Err(modes_refused(&system.plain_squares()).into());
     }
     if system.forces.len() > 1 {
         return Err(ResonanceError::SecondPhase { phases: system.forces.len() }.into());

@@ -301,6 +301,11 @@ impl System {
             && self.frequencies.iter().zip(&self.squares).all(|(nu, known)| square(nu) == *known)
     }
 
+    /// nu_j^2 in numbers, not in multiples of a root.
+    pub(super) fn plain_squares(&self) -> Vec<Rational> {
+        self.unit.as_ref().map_or_else(|| self.squares.clone(), |unit| unit.plain(&self.squares))
+    }
+
     /// The first frequency without a value that coefficients are divided by.
     #[must_use]
     pub fn open_frequency(&self) -> Option<&String> {

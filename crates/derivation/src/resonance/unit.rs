@@ -158,6 +158,40 @@ impl Unit {
         Some(root().or_else(|| values(&self.name))?.ball(balls))
     }
 
+    /// Puts the square of a root into terms whose exponents of the symbols begin at `first`.
+    pub(super) fn put_in<'a>(
+        &self,
+        symbols: &[String],
+        first: usize,
+        lists: impl Iterator<Item = &'a mut Terms>,
+    ) {
+        let place = symbols.iter().position(|name| *name == self.name);
+        let (Some(place), Some(d)) = (place, &self.square) else { return };
+        lists.for_each(|terms| *terms = reduced(std::mem::take(terms), first + place, d));
+    }
+
+    /// A constant with the square of a root put in: sqrt(2)^2*T is 2*T.
+    pub(super) fn with_square(&self, e: Expression) -> Expression {
+        let (Some(d), Some(all)) = (&self.square, expand(&e)) else { return e };
+        let term = |(monomial, q): (&Monomial, &Rational)| {
+            let mut monomial = monomial.clone();
+            let power = monomial.parameters.remove(&self.name).unwrap_or(0);
+            let pairs = power.div_euclid(2);
+            if power != 2 * pairs {
+                monomial.parameters.insert(self.name.clone(), 1);
+            }
+            all.tree(&monomial, &(Rational::from(d.pow(pairs)) * q))
+        };
+        let sum = Expression::Sum(all.terms.iter().map(term).collect());
+        sum.multiplied_out().unwrap_or(sum).canonical()
+    }
+
+    /// The squares of frequencies as numbers, of a root.
+    pub(super) fn plain(&self, squares: &[Rational]) -> Vec<Rational> {
+        let d = self.square.clone().unwrap_or_else(|| 1.into());
+        squares.iter().map(|square| Rational::from(square * &d)).collect()
+    }
+
     /// The squares of frequencies in units of u^2, of those of a root.
     pub(super) fn scaled(&self, squares: &mut [Rational]) {
         if let Some(d) = &self.square {
@@ -169,14 +203,11 @@ impl Unit {
 impl SlowFlow {
     /// With the square of a root put in.
     pub(super) fn with_root(mut self) -> Self {
-        let unit =
-            self.system.unit.as_ref().and_then(|unit| unit.square.as_ref().map(|d| (unit, d)));
-        let Some((unit, d)) = unit else { return self };
-        let of_name = self.system.symbols.iter().position(|name| *name == unit.name);
-        let Some(place) = of_name.map(|place| self.first_symbol() + place) else { return self };
-        let lists = [&mut self.flow, &mut self.solution, &mut self.detuning];
-        for terms in lists.into_iter().flatten().flatten().chain(&mut self.energy) {
-            *terms = reduced(std::mem::take(terms), place, d);
+        let first = self.first_symbol();
+        if let Some(unit) = &self.system.unit {
+            let lists = [&mut self.flow, &mut self.solution, &mut self.detuning];
+            let lists = lists.into_iter().flatten().flatten().chain(&mut self.energy);
+            unit.put_in(&self.system.symbols, first, lists);
         }
         self
     }

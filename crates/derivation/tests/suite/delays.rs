@@ -166,6 +166,24 @@ fn quarters_of_a_turn() {
     assert_eq!(common.flow[0][1].iter().filter(|t| t.exponents[3] == 1).count(), 1);
 }
 
+/// sqrt(2) turns a phase of frequency sqrt(2) by the number 2, and sqrt(2) pi/4 by a quarter: f_1 = (i/(2 sqrt 2)) e^(-i pi/2) z =
+/// sqrt(2)/4 z. Delays that are equal cancel however they are written.
+#[test]
+fn delays_in_roots() {
+    let two = flow(&["x'' + 2*x + eps*x(t - sqrt(2)) = eps*cos(sqrt(2)*t)"], 1, &[]);
+    assert_eq!(two.system.symbols, ["sqrt(2)", "cos(2)", "sin(2)"]);
+    let linear = |delayed: &str| {
+        let text = format!("x'' + 2*x + eps*({delayed}) = eps*cos(sqrt(2)*t)");
+        let found = flow(&[&text], 1, &[]);
+        let place = found.factors().iter().position(|name| name == "sqrt(2)").unwrap();
+        let own = found.flow[0][1].iter().filter(|term| term.exponents[0] == 1);
+        own.map(|t| (t.exponents[place], t.re.clone(), t.im.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(linear("x(t - sqrt(2)) - x(t - 2/sqrt(2))"), []);
+    let quarter = (1, Rational::from((1, 4)), Rational::new());
+    assert_eq!(linear("x(t - sqrt(2)*pi/4)"), [quarter]);
+}
+
 /// Delays 7/4 and 1/3 have the common unit 1/12: each turns by an angle of its own, not by the powers 21 and 4 of one.
 /// Order one by hand: -g_1 = k x(t - 7/4) + h x(t - 1/3), f_1 = (i/2) (k e^(-7i/4) + h e^(-i/3)) z.
 #[test]

@@ -6,6 +6,7 @@ use lindstedt_coeff::print::Style;
 use lindstedt_derivation::DerivationError;
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::resonance::{NormalMode, ResonanceError, normal_mode};
+use lindstedt_phase::amplitudes::AmplitudeTerm;
 use lindstedt_problem_file::ProblemFile;
 
 fn found(equations: &str, mode: usize, order: usize) -> Result<NormalMode, DerivationError> {
@@ -49,6 +50,35 @@ fn one_unknown_and_damping() {
     let backbone = mode.print_in_amplitude(&mode.frequency_squared[..2], Style::Text);
     assert_eq!(backbone, "1 + 3/4*rho*eps");
     assert_eq!(mode.print_order(&mode.growth[1], Style::Text), "-1/2*mu");
+}
+
+/// The square of a root is put in: with c = sqrt(2), x'' + 2 x + eps c x^3 is, in its own time, x'' + x + eps c/2 x^3.
+#[test]
+fn a_root_that_is_the_unit() {
+    let root = found("x'' + 2*x + eps*sqrt(2)*x^3", 1, 4).unwrap();
+    let symbol = found("x'' + x + eps*c*x^3/2", 1, 4).unwrap();
+    assert_eq!((&*root.symbols, root.checked_orders), (&["sqrt(2)".to_owned()][..], Some(4)));
+    let put_in = |terms: &[AmplitudeTerm], place: usize| -> Vec<_> {
+        let term = |t: &AmplitudeTerm| {
+            let mut t = t.clone();
+            let pairs = t.exponents[place] / 2;
+            t.exponents[place] %= 2;
+            [&mut t.re, &mut t.im].into_iter().for_each(|c| *c <<= pairs);
+            (t.exponents, t.re, t.im)
+        };
+        terms.iter().map(term).collect()
+    };
+    for (place, ours, theirs) in [
+        (1, &root.frequency_squared, &symbol.frequency_squared),
+        (3, &root.solution[0], &symbol.solution[0]),
+    ] {
+        for (ours, theirs) in ours.iter().zip(theirs) {
+            assert!(ours.iter().all(|term| term.exponents[place] < 2));
+            assert_eq!(put_in(ours, place), put_in(theirs, place));
+        }
+    }
+    let backbone = root.print_in_amplitude(&root.frequency_squared[..3], Style::Text);
+    assert_eq!(backbone, "1 + 3/8*sqrt(2)*rho*eps + 3/256*rho^2*eps^2");
 }
 
 #[test]

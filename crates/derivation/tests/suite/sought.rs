@@ -129,6 +129,16 @@ fn a_symbol_named_like_an_order_is_refused() {
     assert!(refused.starts_with("the answer is written with x_1, a coefficient:"), "{refused}");
 }
 
+/// The squares in a refusal are numbers, not multiples of the root that frequencies are counted in.
+#[test]
+fn a_frequency_that_is_a_root_is_refused_with_its_square() {
+    let text = "equation = \"x'' + 8*x + eps*m*x - eps*x*cos(2*sqrt(8)*t)\"\n[parameters]\nm = { value = \"0\" }";
+    let problem = ProblemFile::parse(text).unwrap().problem;
+    let refused = sought(&problem, "m", &AveragingSettings::default(), &mut |_| true);
+    let refused = refused.err().unwrap().to_string();
+    assert!(refused.contains("the squares are 8"), "{refused}");
+}
+
 /// omega^2 = 1 + 3/4 e + 3/128 e^2 of x'' + x + e x^3, with the first harmonic 1, read backwards; with a force the
 /// motion of the sine has another a.
 #[test]
