@@ -260,7 +260,7 @@ pub fn slow_flow(
 /// let text = "equation = \"x'' + x + eps*x^3 = eps*cos(24/25*t)\"";
 /// let problem = ProblemFile::parse(text)?.problem;
 /// let found = slow_flow_undetuned(&problem, &AveragingSettings::default(), &mut |_| true)?;
-/// assert!(found.system.beside.is_none() && found.system.force() == (24, 25));
+/// assert!(found.system.beside.is_none() && found.system.force() == rug::Rational::from((24, 25)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn slow_flow_undetuned(
