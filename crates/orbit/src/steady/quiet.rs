@@ -160,7 +160,7 @@ fn excluded(system: &System, region: &[Interval], pairs: usize, limits: &Limits)
     Some(boxes)
 }
 
-/// All zeros of a flow with |w_j| up to the reach, as [`all_zeros`] has them. Where the phase of an unknown is free, those in
+/// All zeros of a flow with |w_j| up to the reach, as [`all_zeros`](super::all_zeros) has them. Where the phase of an unknown is free, those in
 /// which it is zero are looked for among fewer unknowns, once it is proved that there are no others.
 #[must_use]
 pub fn all_states(
