@@ -321,6 +321,25 @@ fn starts_of_several_unknowns() {
     assert!(Respond::read_start("1,2,3").is_err());
 }
 
+/// A start with a velocity leads to the same state whether the frequency is sqrt(2) or the fraction 17/12 beside it, but where the
+/// bound of a basin lies between the two.
+#[test]
+fn starts_in_the_unit_of_frequency() {
+    let set = [("eps", "1/10"), ("F", "1"), ("sigma", "1")];
+    let state = |square: &str, nu: &str, velocity: i32| {
+        let equation =
+            format!("x'' + {square}*x + eps*(x'/5 + x^3) = eps*F*cos(({nu} + eps*sigma)*t)");
+        let start = Some(Respond::read_start(&format!("1,{velocity}/4")).unwrap());
+        ask(&equation, &set, &Respond { start, ..to_order(1) }).leads_to.unwrap().state
+    };
+    let pairs: Vec<_> =
+        (-16..=16).map(|v| [state("289/144", "17/12", v), state("2", "sqrt(2)", v)]).collect();
+    let apart = pairs.iter().filter(|[a, b]| a != b).count();
+    let bounds = pairs.windows(2).filter(|two| two[0][0] != two[1][0]).count();
+    assert!(apart <= bounds && bounds > 0, "{pairs:?}");
+    assert!(apart <= 1, "{pairs:?}");
+}
+
 /// Of a start at the rim of a basin the leading order does not decide. In time the first comes to rest (2400 periods), the slow flow
 /// to a state of amplitude 2.24; the others leave rest, which is unstable, for a state that the force of order eps chooses.
 #[test]
