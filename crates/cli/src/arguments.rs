@@ -647,18 +647,3 @@ fn memory_size(text: &str) -> Result<u64, String> {
     let value: u64 = number.trim().parse().map_err(|_| format!("not a size: {text}"))?;
     value.checked_shl(shift).filter(|v| v >> shift == value).ok_or_else(|| "too large".to_owned())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::memory_size;
-
-    #[test]
-    fn sizes_of_memory() {
-        for (text, size) in [("8G", 8 << 30), ("5GB", 5 << 30), ("3kb", 3 << 10), ("70", 70)] {
-            assert_eq!(memory_size(text), Ok(size), "{text}");
-        }
-        for text in ["", "G", "many", "99999999999999G"] {
-            assert!(memory_size(text).is_err(), "{text}");
-        }
-    }
-}

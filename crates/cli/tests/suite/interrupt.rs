@@ -166,6 +166,14 @@ fn predictions_of_memory_refuse_what_is_far_beyond() {
     let (code, error) = folder.run(&["derive", "pendulum", "--order", "100000"]);
     assert_eq!(code, Some(4));
     assert!(error.contains("need 10^583 MiB, the limit is 8192 MiB"), "{error}");
+    for (size, shown) in [("5GB", "5120"), ("20480kb", "20"), ("512M", "512"), ("70", "0.0")] {
+        let line = ["derive", "pendulum", "--order", "100000", "--limit-memory", size];
+        let (_, error) = folder.run(&line);
+        assert!(error.contains(&format!("the limit is {shown} MiB")), "{size}: {error}");
+    }
+    for size in ["", "G", "many", "99999999999999G"] {
+        assert_eq!(folder.run(&["problems", "--limit-memory", size]).0, Some(2), "{size}");
+    }
 }
 
 /// The most resident memory of a program while it ran, in MiB, and how it ended.

@@ -8,4 +8,5 @@ mod limits;
 mod normal_mode;
 mod resonance;
 mod sought;
+mod symbols;
 mod unit;
