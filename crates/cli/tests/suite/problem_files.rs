@@ -3,7 +3,7 @@
 
 mod bad;
 
-use crate::program::{Folder, example, lindstedt, text};
+use crate::program::{Folder, example, json, lindstedt, refusal, text};
 use serde_json::Value;
 
 #[test]
@@ -252,4 +252,31 @@ fn a_delay_with_pi_on_the_card() {
     let (sin, cos) = (2f64.sqrt() * std::f64::consts::FRAC_PI_3).sin_cos();
     assert!((number("A_1 =") + cos / 4.0).abs() < 1e-15, "{text}");
     assert!((number("B_1 =") - sin / 4.0).abs() < 1e-15, "{text}");
+}
+
+/// What a file calls fixed no sweep varies, in both kinds of expansion; what it sweeps has the file's range.
+#[test]
+fn sweeps_go_by_the_file() {
+    let folder = Folder::new("swept");
+    let text = "equation = \"x'' + x + eps*k*x^3 = 0\"\ncondition = ['initial-amplitude', 'free-amplitude']\nfixed = ['k']\nswept = ['eps=0..1/5:3']\n\
+                [parameters]\nk = { value = '1' }\n";
+    let path = folder.file("ranged.toml", text);
+    for start in
+        [&["--normalisation", "initial"][..], &["--normalisation", "free", "--start", "1,0"]]
+    {
+        let asked = |sweep: &'static str| {
+            [
+                &[
+                    "evaluate", &*path, "--order", "2", "--digits", "8", "--set", "eps=1/10",
+                    "--sweep", sweep,
+                ],
+                start,
+            ]
+            .concat()
+        };
+        let (code, error) = refusal(&asked("k=1..2:3"));
+        assert!(code == Some(2) && error.contains("it is fixed in"), "{error}");
+        let found = json(&asked("eps"));
+        assert_eq!(found["columns"]["values"].as_array().map(Vec::len), Some(3), "{found}");
+    }
 }
