@@ -1,7 +1,7 @@
 //! Within a crate no two modules use each other, directly or through others. A module is a file;
 //! it uses another when a path in its text (in `use` or inline) leads there, re-exports followed to
 //! where the name is written. A module and those inside it are one thing to a reader: what they use
-//! of each other does not count.
+//! of each other does not count. And crates import what the book's table of them says.
 //!
 //! Only the standard library: `.ci/run` compiles this file alone and runs it before all else.
 
@@ -241,4 +241,32 @@ fn a_circle_is_found() {
     let b = "// crate::a::c\nfn g() { \"crate::a\" }\n#[cfg(test)]\nmod tests {\n use crate::a::c::Deep;";
     let none = crate_of([("", root), ("a", a), ("a::c", "use super::super::b;"), ("b", b)]);
     assert_eq!(shown("x", &none), [""; 0]);
+}
+
+/// Of a row of words, as "all", the crates named are among those imported.
+#[test]
+fn crates_import_what_the_book_says() -> Result<(), Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let page = std::fs::read_to_string(root.join("docs/src/contributing/architecture.md"))?;
+    let mut rows = 0;
+    for line in page.lines().filter(|line| line.starts_with("| `")) {
+        let mut cells = line.trim_matches('|').split('|').map(str::trim);
+        let name = cells.next().unwrap_or_default().trim_matches('`');
+        let cell = cells.next_back().unwrap_or_default();
+        let said: BTreeSet<&str> = cell.split('`').skip(1).step_by(2).collect();
+        let folder = if name == "tests" || name == "python" { "" } else { "crates" };
+        let manifest = std::fs::read_to_string(root.join(folder).join(name).join("Cargo.toml"))?;
+        let from = manifest.split("\n[dependencies]\n").nth(1).unwrap_or_default();
+        let ours = from.lines().take_while(|line| !line.starts_with('[')).filter_map(|line| {
+            let name = line.strip_suffix(".workspace = true")?.strip_prefix("lindstedt")?;
+            Some(if name.is_empty() { "lindstedt" } else { name.trim_start_matches('-') })
+        });
+        let ours: BTreeSet<&str> = ours.collect();
+        let whole = !cell.contains("all") && !cell.contains("below");
+        let right = if whole { said == ours } else { said.is_subset(&ours) };
+        assert!(right, "{name}: the book says {cell}, its manifest {ours:?}");
+        rows += 1;
+    }
+    assert_eq!(rows, std::fs::read_dir(root.join("crates"))?.count() + 2);
+    Ok(())
 }
