@@ -29,7 +29,7 @@ use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
 use rug::Rational;
-use start::{Complex, Search, Start, Starts, power};
+use start::{Complex, Search, Start, Starts, may_choose, power};
 
 /// A parameter as a series, for every motion that stays periodic.
 ///
@@ -273,6 +273,10 @@ impl Task<'_> {
         if self.step == 0 {
             let list = Start::symmetric().into_iter().take(1).collect();
             return Ok(Starts { list, order: 1, all: true });
+        }
+        let chosen = |e: &Expression| may_choose(e, self.settings.order, [harmonic, self.step]);
+        if !self.system.equations.iter().any(chosen) {
+            return Ok(Starts { list: Start::symmetric(), order: 1, all: true });
         }
         let names: Vec<&str> = self.system.symbols.iter().map(String::as_str).collect();
         let algebra = Amplitudes::new(Integers, &self.system.frequencies, self.base, &names);

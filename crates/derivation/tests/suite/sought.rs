@@ -5,12 +5,14 @@
 use crate::delays::{C, add, mul, times};
 use lindstedt_algebra::Rationals;
 use lindstedt_coeff::print::Style;
+use lindstedt_derivation::Progress;
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::resonance::{Sought, SoughtBranch, sought};
 use lindstedt_number::Exact;
 use lindstedt_problem_file::ProblemFile;
 use lindstedt_series::Series;
 use rug::Rational;
+use rug::ops::Pow;
 
 const ORDER: usize = 20;
 
@@ -114,6 +116,37 @@ fn tongue_edges_as_printed() {
     );
 }
 
+/// x'' + (a + q cos 3t) x at a = 1: no order chooses a start, which needs no slow flow. DLMF 28.15.1 at nu = 2/3, with q there
+/// = -2/9 q and a there = 4/9 a.
+#[test]
+fn a_linear_equation_away_from_its_tongues() {
+    let problem = ProblemFile::parse("equation = \"x'' + (a + eps*cos(3*t))*x = 0\"").unwrap();
+    let parameters = [("a".to_owned(), Exact::Rational(1.into()))].into();
+    let settings = AveragingSettings { order: 7, parameters, ..AveragingSettings::default() };
+    let mut orders = 0;
+    let mut observer = |progress| {
+        orders += usize::from(matches!(progress, Progress::Order(..)));
+        true
+    };
+    let found = sought(&problem.problem, "a", &settings, &mut observer).unwrap();
+    assert_eq!((orders, found.all), (2 * 7, true));
+    let nu = Rational::from((4, 9));
+    let [one, four, nine] = [1u32, 4, 9].map(|k| nu.clone() - k);
+    let cube = Rational::from((&one).pow(3));
+    let sixth = (nu.clone() * 9u32 + 58u32) * &nu + 29u32;
+    let squares = [
+        nu.clone(),
+        Rational::from(&one * 2u32).recip(),
+        (nu.clone() * 5u32 + 7u32) / (32u32 * cube.clone() * &four),
+        sixth / (64u32 * cube * one.square() * four * nine),
+    ];
+    let mut expected = vec![Rational::new(); 8];
+    for (k, c) in squares.into_iter().enumerate() {
+        expected[2 * k] = Rational::from((9, 4)) * c * Rational::from((4, 81)).pow(k as u32);
+    }
+    assert_eq!(numbers(&found), [expected.clone(), expected]);
+}
+
 /// x_1 is an order of the motion.
 #[test]
 fn a_symbol_named_like_an_order_is_refused() {
@@ -157,8 +190,7 @@ fn a_shift_of_time_moves_no_edge() {
     for m in [1, 2, 3] {
         let expected = |scale: &Rational| {
             let scaled = |list: Vec<Rational>| {
-                let power =
-                    |(n, c): (usize, Rational)| c * rug::ops::Pow::pow(scale.clone(), n as u32);
+                let power = |(n, c): (usize, Rational)| c * scale.clone().pow(n as u32);
                 list.into_iter().take(9).enumerate().map(power).collect::<Vec<_>>()
             };
             let mut both = [edge(m.into(), true), edge(m.into(), false)].map(scaled);

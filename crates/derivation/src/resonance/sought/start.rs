@@ -5,8 +5,11 @@
 //! that does not hold for every v, it is an equation for v: with the harmonics 0 and k alone a + 2 Re(g v^k) = 0, a
 //! quadratic one for u = v^k.
 
+use super::super::forces::harmonic;
 use super::super::{ResonanceError, Terms};
 use crate::error::DerivationError as Error;
+use lindstedt_equation::Expression;
+use lindstedt_equation::monomials::expand;
 use lindstedt_expand::ExpandError;
 use rug::ops::Pow;
 use rug::{Integer, Rational};
@@ -95,6 +98,35 @@ pub(super) struct Starts {
     pub list: Vec<Start>,
     pub order: usize,
     pub all: bool,
+}
+
+/// Whether a term z^p zbar^q E^m, m != 0, of these orders can choose a start, nu and Omega being these multiples of one
+/// frequency: resonant ones have |m| >= nu and |p - q - 1| >= Omega. With terms eps^k x^d E^h, by the largest
+/// (d - 1)/k and h/k, order n has p + q <= l = 1 + n (d - 1)/k and |m| <= n h/k + l h_0, h_0 of the force at order zero.
+/// For linear equations: whether 2 nu is a whole multiple of Omega.
+pub(super) fn may_choose(equation: &Expression, order: usize, [nu, step]: [i32; 2]) -> bool {
+    let Some(all) = expand(equation) else { return true };
+    let (mut degree, mut force, mut first) = (Rational::new(), Rational::new(), 0);
+    for m in all.terms.keys() {
+        let (mut d, mut h) = (m.x + m.velocity, 0);
+        for (name, n) in &m.parameters {
+            let wave = all.atoms.get(name).and_then(harmonic);
+            h += wave.map_or(0, |(_, _, harmonic)| (harmonic * n).unsigned_abs());
+        }
+        for (name, n) in &m.atoms {
+            let Some(Expression::Unknown(_)) = all.atoms.get(name) else { return true };
+            d += n;
+        }
+        match m.order {
+            0 => first = h.max(first),
+            k => {
+                degree = degree.max(Rational::from((d.saturating_sub(1), k)));
+                force = force.max(Rational::from((h, k)));
+            }
+        }
+    }
+    let leaves = degree * order + 1u32;
+    leaves.clone() + 1u32 >= step && force * order + leaves * first >= nu
 }
 
 /// A polynomial: the exponents of v and of the symbols.
