@@ -641,3 +641,82 @@ fn two_modes_in_the_whole_box() {
     }
     assert_eq!(reached, [true; 3]);
 }
+
+fn decimals(numbers: &[lindstedt::Number]) -> Vec<f64> {
+    numbers.iter().map(|number| number.decimal.parse().unwrap()).collect()
+}
+
+/// Two oscillators of van der Pol with dampers between them, to order one by hand: with w_j = (a_j/2) e^{i phi_j},
+///
+///   a_1' = (eps/2) (a_1 - a_1^3/4 + k (a_2 cos phi - a_1)),   phi' = (eps/2) (s - k (a_1/a_2 + a_2/a_1) sin phi),
+///
+/// so that equal amplitudes have a^2 = 4 (1 - k (1 - cos phi)), sin phi = s/(2 k): in step and in opposition without detuning,
+/// none beyond |s| = 2 k, where a^2 = 4 (1 - k). Others have a_1^2 + a_2^2 = 4 (1 - k) at s = 0, phi = pi and a_1 a_2 = 4 k.
+#[test]
+fn two_self_excited_unknowns_lock() {
+    let pair = "x'' + x = eps*((1 - x^2)*x' + k*(y' - x')); y'' + (1 + eps*s)*y = eps*((1 - y^2)*y' + k*(x' - y'))";
+    let found = ask(pair, &[("eps", "1/10"), ("k", "1/5"), ("s", "0")], &to_order(1));
+    let states = &found.states[0];
+    assert!(states.count_proved && found.complete && states.count == 5);
+    let mut squares: Vec<_> = states.list.iter().map(|it| decimals(&it.amplitudes)).collect();
+    squares.iter_mut().flatten().for_each(|a| *a *= *a);
+    let known = [[4.0, 4.0], [2.4, 2.4], [0.0, 0.0]];
+    for pair in known {
+        assert!(
+            squares.iter().any(|it| (it[0] - pair[0]).hypot(it[1] - pair[1]) < 1e-9),
+            "{squares:?}"
+        );
+    }
+    let uneven =
+        |it: &&Vec<f64>| (it[0] * it[1] - 0.64).abs() < 1e-9 && (it[0] + it[1] - 3.2).abs() < 1e-9;
+    assert_eq!(squares.iter().filter(uneven).count(), 2, "{squares:?}");
+    // Trace of the linear flow without the exponent 0: eps (1 - a^2/2 - k) for each unknown.
+    for state in states.list.iter().filter(|it| it.frequency.is_some()) {
+        let sum: f64 = state.exponents.iter().map(|[re, _]| re.value).sum();
+        let squares: f64 = decimals(&state.amplitudes).iter().map(|a| a * a).sum();
+        assert!((sum - 0.1 * (1.6 - squares / 2.0)).abs() < 1e-9 && state.exponents.len() == 3);
+        assert_eq!(state.stable, Some((squares - 8.0).abs() < 1e-9));
+    }
+    let question = Respond { sweep: Some(Axis::parse("s=-1..1:60").unwrap()), ..to_order(1) };
+    let found = ask(pair, &[("eps", "1/10"), ("k", "1/4")], &question);
+    let mut folds: Vec<f64> =
+        found.folds.iter().map(|it| decimals(&[it.value.clone()])[0]).collect();
+    folds.sort_by(f64::total_cmp);
+    assert!(folds.len() == 2 && (folds[0] + 0.5).abs() < 1e-9 && (folds[1] - 0.5).abs() < 1e-9);
+    assert_eq!(found.folds[0].value.status, Status::Proved);
+    assert_eq!(found.branches.iter().filter(|branch| branch.closed).count(), 1);
+}
+
+/// The potential of Henon and Heiles has eight normal modes at low energy (Churchill, Pecelli and Rod 1979): to order two those
+/// in a plane are a circle, from order four on three pass through the saddles' directions and three do not, and two turn.
+#[test]
+fn eight_normal_modes() {
+    let wells = "x'' + x + 2*eps*x*y; y'' + y + eps*(x^2 - y^2)";
+    let values = [("eps", "1/10"), ("amplitude", "1")];
+    let states = ask(wells, &values, &to_order(4)).states.remove(0);
+    assert!(states.count_proved && states.count == 8);
+    let unstable = states.list.iter().filter(|it| it.stable == Some(false)).count();
+    assert_eq!((unstable, states.list.iter().filter(|it| it.stable.is_none()).count()), (3, 5));
+    let turning: Vec<_> = states
+        .list
+        .iter()
+        .filter(|it| {
+            let phases: Vec<f64> =
+                it.phases.iter().flatten().map(|p| p.decimal.parse().unwrap()).collect();
+            phases.iter().any(|p: &f64| (p.abs() - 1.5707963267949).abs() < 1e-9)
+        })
+        .collect();
+    assert_eq!(turning.len(), 2);
+    // K_4 = (1/48) (-5 R^4 + 28 L^2), eps^2 K_4 by the action R^2/2, L = R^2/2 of the turning ones, R^2 = 1:
+    // nu = 1 + eps^2 (-5 + 7)/12; in the plane 1 - eps^2 5/12.
+    for state in &states.list {
+        let known =
+            if turning.iter().any(|it| std::ptr::eq(*it, state)) { 1.0 / 6.0 } else { -5.0 / 12.0 };
+        let rate = (state.frequency.unwrap().value - 1.0) / 0.01;
+        assert!((rate - known).abs() < 5e-3, "{rate} {known}");
+    }
+    let remarks = "energy is conserved";
+    let refused = Oscillator::parse(wells).unwrap().set("eps", "1/10").unwrap();
+    let refused = refused.respond(&Respond::default(), &Work::default()).unwrap_err();
+    assert!(refused.to_string().contains(remarks) && refused.hint().contains("--sweep amplitude"));
+}

@@ -8,6 +8,9 @@
 //!
 //! What is evaluated is w'/eps. Its steady states are the periodic (of several phases quasi-periodic) responses; k_j = 1 at
 //! a primary resonance, 1/2 at the principal parametric one, 1/3 and 3 at the sub- and superharmonic ones.
+//!
+//! Without a force k_j = nu_j/nu_1, eta turns with nu_1 and one phase is free at least: two unknowns that a resonance ties
+//! together lock where w_j' = i k_j delta w_j, at the frequency nu_1 + eps delta.
 
 use lindstedt_derivation::resonance::{Phase, SlowFlow, Terms};
 use lindstedt_orbit::steady::{ComplexTerm, Flow, FreePhase, Polynomial};
@@ -40,7 +43,7 @@ pub struct Rotating {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NoFrame {
-    /// There is no force.
+    /// There is no force, and not two unknowns.
     NoForce,
     /// The rate of a force is no number.
     NoNumber,
@@ -54,14 +57,17 @@ pub enum NoFrame {
 /// [`NoFrame`] where there is none.
 pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Result<Rotating, NoFrame> {
     let system = &slow.system;
-    let first = system.forces.first().ok_or(NoFrame::NoForce)?;
     let rates = system.forces.iter().map(|phase| phase.number());
-    let first = first.number().filter(|_| rates.clone().all(|rate| rate.is_some()));
-    let first = first.ok_or(NoFrame::NoNumber)?;
+    let rates = rates.collect::<Option<Vec<_>>>().ok_or(NoFrame::NoNumber)?;
+    let first = match (rates.first(), &system.frequencies[..]) {
+        (Some(rate), _) => rate,
+        (None, [first, _]) => first,
+        (None, _) => return Err(NoFrame::NoForce),
+    };
     let relations = Relations::of(slow, &slow.flow, order);
     let free = |nu: &Rational| {
         let mut turn = vec![Rational::new(); slow.forces()];
-        turn[0] = Rational::from(nu / &first);
+        turn[0] = Rational::from(nu / first);
         turn
     };
     let turns: Vec<_> = system.frequencies.iter().map(free).collect();
@@ -74,14 +80,38 @@ pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Result<Rotating, 
     whole &= slow.doubtful.is_empty() || relations.combination().is_none();
     let of = |j| equation(slow, j, &turns[j], (order, whole));
     let equations: Vec<Vec<ComplexTerm>> = (0..turns.len()).map(of).collect();
-    let names: Vec<&str> = system.symbols.iter().map(String::as_str).chain([small]).collect();
+    let energy = energy(slow);
+    let family = energy.as_ref().map(|_| FAMILY);
+    let names = system.symbols.iter().map(String::as_str).chain([small]).chain(family);
+    let names: Vec<&str> = names.collect();
     let backbone = (turns.len() == 1).then(|| backbone(slow, &turns[0], &names, order));
     let (fixed, combination) = (relations.fixed(), relations.combination());
     let flow = Flow::of_complex(&equations, &names);
     let free = relations.weights().zip(<[_; 2]>::try_from(equations).ok());
     let parameters = flow.parameters.clone();
-    let free = free.map(|(weights, equations)| FreePhase { equations, weights, parameters });
+    let free = free.filter(|_| fixed > 0 || system.forces.is_empty());
+    let free =
+        free.map(|(weights, equations)| FreePhase { equations, weights, parameters, energy });
     Ok(Rotating { flow, whole, turns, fixed, combination, free, backbone })
+}
+
+/// The name of the parameter of a family of normal modes.
+pub const FAMILY: &str = "amplitude";
+
+/// The coefficients of z_j zbar_j in the energy of two unknowns.
+fn energy(slow: &SlowFlow) -> Option<[Polynomial; 2]> {
+    let mut sums = [Polynomial::default(), Polynomial::default()];
+    let pair = slow.unknowns() == 2 && slow.system.forces.is_empty();
+    for term in slow.energy.first().filter(|_| pair)? {
+        let powers: Vec<u32> =
+            term.exponents[slow.first_symbol()..].iter().map(|e| power(*e)).collect();
+        match term.exponents[..4] {
+            [1, 1, 0, 0] => sums[0].add_term(&powers, &term.re),
+            [0, 0, 1, 1] => sums[1].add_term(&powers, &term.re),
+            _ => return None,
+        }
+    }
+    Some(sums)
 }
 
 /// What fixes the k_j: every term z^p zbar^q E^m of f_j is a relation (p - q - e_j) k = -m.
@@ -93,6 +123,14 @@ struct Relations {
     contradictory: bool,
     /// Sets of unknowns that relations tie together, and whether one of these knows the force.
     groups: Vec<(BTreeSet<usize>, bool)>,
+}
+
+impl Rotating {
+    /// The flow of two unknowns without a force.
+    #[must_use]
+    pub fn unforced(&self) -> Option<&FreePhase> {
+        self.free.as_ref().filter(|_| self.fixed == 0)
+    }
 }
 
 impl Relations {
@@ -170,9 +208,9 @@ impl Relations {
         if self.groups.iter().any(|(_, forced)| *forced) { self.rows.len() } else { 0 }
     }
 
-    /// d_1, d_2 of the phases that no relation of two unknowns sees, where a force fixes the others.
+    /// d_1, d_2 of the phases that the only relation of two unknowns does not see.
     fn weights(&self) -> Option<[Rational; 2]> {
-        let ([(row, _)], Some(_)) = (&self.rows[..], self.combination()) else { return None };
+        let [(row, _)] = &self.rows[..] else { return None };
         let [a, b] = &row[..] else { return None };
         (!a.is_zero() && !b.is_zero()).then(|| [Rational::from(1), -Rational::from(a / b)])
     }

@@ -91,6 +91,9 @@ pub struct Point {
     pub stable: Option<bool>,
     /// The Floquet exponents per unit of t, to the order kept.
     pub exponents: Vec<[Estimate; 2]>,
+    /// Without a force: eta'.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<Estimate>,
 }
 
 /// A point at which states change.
@@ -137,8 +140,12 @@ pub struct State {
     pub stable: Option<bool>,
     /// The Floquet exponents per unit of t, to the order kept.
     pub exponents: Vec<[Estimate; 2]>,
-    /// Where the force leaves one phase free: the rates by which the frequencies of the unknowns differ from those of the
-    /// frame. The free phase is chosen so that one phi_j is 0; there is no exponent along it.
+    /// Without a force: eta'; nothing at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<Estimate>,
+    /// Where one phase is free: the rates by which the frequencies of the unknowns differ from those of the
+    /// frame, without a force from those of the linear unknowns. The free phase is chosen so that one phi_j is 0; the exponent 0 along it
+    /// is not listed, nor is the other one along a family of normal modes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub drift: Vec<Estimate>,
     /// Re w_1, Im w_1, ...

@@ -1,30 +1,56 @@
-//! The states of a combination resonance, where one phase is free.
+//! The states of a combination resonance and of two unknowns without a force, where one phase is free.
 
-use super::answer::{Estimate, State, States};
+use super::answer::{Estimate, Response, State, States};
 use super::shown::{BITS, polar, proved, real};
-use super::subject::Subject;
-use crate::{Error, Number};
+use super::subject::{Subject, Values};
+use super::{Respond, not_determined};
+use crate::refusal::Refused;
+use crate::{Error, Exact, Number};
 use lindstedt_number::ball::Balls;
 use lindstedt_number::interval::Interval;
 use lindstedt_number::real::{Certified, Real};
-use lindstedt_orbit::steady::{FreePhase, Limits, Point, System, Zero, all_zeros};
+use lindstedt_orbit::steady::{
+    self, FreePhase, Limits, Located, Point, System, Turning, Value, Zero, all_zeros,
+};
 use rug::Rational;
 
 /// Where |w_o| is at most this times |w_c|, c is the unknown of the first search; beyond, of the second. Motions of
 /// equal amplitudes lie within one of them.
 const DIVIDE: (i32, i32) = (137, 100);
+/// Boxes looked at for each of the two.
+const MOST_BOXES: usize = 200_000;
+/// Zeros this near to one another, in parts of the largest |w_j|, are the phases that a gauge leaves to one motion.
+const SAME: f64 = 1e-9;
+/// Points of two branches this near are one, in parts of the reach.
+const NEAR: f64 = 1e-4;
+
+/// Questions that a force alone answers.
+fn refuse_forced(question: &Respond) -> Result<(), Error> {
+    let (code, what) = match question {
+        Respond { second: Some(_), .. } => ("sweep", "one parameter varies"),
+        Respond { follow: true, .. } => ("follow", "no period is known"),
+        Respond { start: Some(_), .. } => {
+            ("start", "no phase is fixed in which a start could settle")
+        }
+        _ => return Ok(()),
+    };
+    let message = format!("without a force {what}");
+    Err(Refused::usage(code, message, "`lindstedt simulate` shows motions").into())
+}
 
 impl Subject<'_> {
-    /// Adds the motions that are steady but for the free phase, in frames of their own.
+    /// Adds the motions that are steady but for the free phase, in frames of their own, at values of the parameters.
     pub(super) fn with_free_phase(
         &self,
         free: &FreePhase,
         reach: f64,
-        system: &System,
+        values: &Values,
         states: &mut States,
     ) -> Result<(), Error> {
         let size = Rational::from_f64(reach).ok_or(Error::NoValue)?;
         let divide = Rational::from(DIVIDE);
+        let system = self.rotating.flow.system(values);
+        let still = states.list.len();
         for (c, most) in [divide.clone(), divide.recip()].into_iter().enumerate() {
             let Some(flow) = free.reduced(c, &[size.clone(), most.clone()]) else {
                 states.count_proved = false;
@@ -33,15 +59,19 @@ impl Subject<'_> {
             };
             let region =
                 [Interval::new(-1.0, 1.0), Interval::new(-1.0, 1.0), Interval::new(0.0, 1.0)];
-            let limits = Limits { modulus: Some(1.0), ..self.limits(reach) };
-            let reduced = flow.system(&self.values([None, None]));
-            let found = all_zeros(&reduced, &region, &limits).ok_or(Error::NoValue)?;
+            let limits = Limits { modulus: Some(1.0), boxes: MOST_BOXES, ..self.limits(reach) };
+            let found = all_zeros(&flow.system(values), &region, &limits).ok_or(Error::NoValue)?;
             states.boxes += found.boxes;
             states.undecided += found.undecided.len();
             states.at_edge += found.at_edge.len();
             for zero in &found.zeros {
-                match self.turning(free, (c, &size, &most), system, zero) {
-                    Kept::Yes(state) => states.list.push(state),
+                match self.turning(free, (c, &size, &most), (&system, values), zero) {
+                    Kept::Yes(state) => {
+                        let same = |other: &State| free.same(&state.at, &other.at, SAME * reach);
+                        if !states.list[still..].iter().any(same) {
+                            states.list.push(state);
+                        }
+                    }
                     Kept::Beyond => {}
                     Kept::AtEdge => states.at_edge += 1,
                 }
@@ -54,12 +84,128 @@ impl Subject<'_> {
         Ok(())
     }
 
+    /// All motions without a force at values of the parameters: rest, and those of which the unknowns keep in step. Those of
+    /// a family have its amplitude, and rest has none.
+    fn in_step(
+        &self,
+        free: &FreePhase,
+        reach: f64,
+        sample: Option<&Exact>,
+    ) -> Result<States, Error> {
+        let values = self.values([sample, None]);
+        let rate = self.rate(sample.map(Exact::to_f64));
+        let rest = || {
+            let point = steady::state_at(&self.rotating.flow.system(&values), &[0.0; 4]);
+            let zero = proved(&Certified::from_rational(Balls::new(BITS), &Rational::new()));
+            Some(State {
+                amplitudes: vec![zero.clone()?, zero?],
+                phases: vec![None, None],
+                stable: self.is_stable(&point, rate),
+                exponents: self.exponents(&point, rate),
+                frequency: None,
+                drift: Vec::new(),
+                growth: 0.0,
+                at: point.at,
+            })
+        };
+        let mut states = States {
+            value: sample.and_then(|value| self.shown_sample(value)),
+            count: 0,
+            count_proved: self.is_whole(),
+            undecided: 0,
+            at_edge: 0,
+            boxes: 0,
+            list: if free.energy.is_some() { Vec::new() } else { rest().into_iter().collect() },
+        };
+        self.with_free_phase(free, reach, &values, &mut states)?;
+        Ok(states)
+    }
+
+    /// The motions without a force at the values set, or their branches over a parameter.
+    pub(super) fn unforced(&self, free: &FreePhase, question: &Respond) -> Result<Response, Error> {
+        refuse_forced(question)?;
+        let Some(axis) = &question.sweep else {
+            let (reach, complete) = self.reach(&[self.values([None, None])])?;
+            let mut response = self.empty(reach, complete);
+            response.states.push(self.in_step(free, reach, None)?);
+            return Ok(response);
+        };
+        let samples = self.samples(axis)?;
+        let at: Vec<_> = samples.iter().map(|sample| self.values([Some(sample), None])).collect();
+        let (reach, complete) = self.reach(&at)?;
+        let mut response = self.empty(reach, complete);
+        response.parameter = Some(axis.name.clone());
+        response.no_closed_missing = Some(false);
+        let mut found = Vec::new();
+        for sample in &samples {
+            let states = self.in_step(free, reach, Some(sample))?;
+            let moving = states.list.iter().filter(|state| !state.drift.is_empty());
+            found.push((Value::from(sample), moving.map(|state| state.at.clone()).collect()));
+            response.states.push(states);
+        }
+        let open = self.open()[0].ok_or_else(not_determined)?;
+        let course = self.course(&samples, axis, reach)?;
+        let course = steady::Course { parameter: open, ..course };
+        let values = self.values([None, None]);
+        let mut known: Vec<&Located> = Vec::new();
+        let branches = free.branches(&values, &found, &course);
+        for Turning { branch, rates, changes } in &branches {
+            let mut shown = self.shown_branch(branch);
+            for (point, delta) in shown.points.iter_mut().zip(rates) {
+                point.frequency = self.frequency(*delta, self.rate(Some(point.value.value)));
+            }
+            response.branches.push(shown);
+            for found in changes {
+                // Each of two branches knows their crossing.
+                let near = |it: &&Located| {
+                    let same =
+                        it.change == found.change && free.same(&it.at, &found.at, NEAR * reach);
+                    same && (it.at[4] - found.at[4]).abs()
+                        < NEAR * (course.range[1] - course.range[0])
+                };
+                if known.iter().any(near) {
+                    continue;
+                }
+                known.push(found);
+                let list = match found.change {
+                    steady::Change::Fold => &mut response.folds,
+                    steady::Change::Hopf => &mut response.hopf,
+                    _ => &mut response.crossings,
+                };
+                list.extend(self.shown_change(found));
+            }
+        }
+        Ok(response)
+    }
+
+    /// What is said of motions without a force.
+    pub(super) fn of_free_motion(&self) -> String {
+        let family = match self.is_family() {
+            true => {
+                "; energy is conserved, the motions are normal modes of that amplitude, which the first unknown alone would have \
+                 with the same energy at order zero: another exponent 0 lies along their family"
+            }
+            false => "",
+        };
+        format!(
+            "no force fixes the phase of a motion: the exponent 0 along it is not listed{family}"
+        )
+    }
+
+    /// eta' of a motion.
+    fn frequency(&self, delta: f64, rate: f64) -> Option<Estimate> {
+        let unit = self.unit()?.midpoint().to_f64();
+        let nu = self.slow.system.frequencies.first()?.to_f64();
+        let free = self.rotating.unforced().is_some();
+        free.then_some(Estimate { value: nu * unit + rate * delta })
+    }
+
     /// The state of a zero of the reduced equations.
     fn turning(
         &self,
         free: &FreePhase,
         (c, size, most): (usize, &Rational, &Rational),
-        system: &System,
+        (system, values): (&System, &Values),
         zero: &Zero,
     ) -> Kept {
         let exact = |q: &Rational| Certified::from_rational(Balls::new(BITS), q);
@@ -90,15 +236,17 @@ impl Subject<'_> {
         let at = [pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]];
         let (delta, exponents) = free.drift(system, &at);
         let point = Point { at: at.to_vec(), exponents, change: None };
-        let rate = self.rate(None);
+        let rate = self
+            .rate(self.open()[0].and_then(|k| values[k].as_ref()).map(|it| it.interval().middle()));
         let scaled = |d: &Rational| Estimate { value: rate * delta * d.to_f64() };
         Kept::Yes(State {
             amplitudes: amplitudes.to_vec(),
             phases: phases.to_vec(),
             stable: self.is_stable(&point, rate),
             exponents: self.exponents(&point, rate),
+            frequency: self.frequency(delta, rate),
             drift: free.weights.iter().map(scaled).collect(),
-            growth: self.growth(&self.values([None, None]), &at),
+            growth: self.growth(values, &at),
             at: at.to_vec(),
         })
     }

@@ -99,8 +99,12 @@ impl Oscillator {
     /// for themselves, and what could be missing is remarked. Cost: the slow flow; a
     /// search with proof per value, milliseconds for one unknown, seconds for two; microseconds per point.
     ///
+    /// Without a force two unknowns that a resonance ties together lock: their motions are counted in the same way, in frames
+    /// that turn with a frequency of their own. Where an energy is conserved these are the normal modes, families over
+    /// `amplitude`, which is that of the first unknown moving alone with the same energy at order zero.
+    ///
     /// # Errors
-    /// [`Refused`] without a force or without a resonance, for walls and jumps, where no box is known; those of
+    /// [`Refused`] without a resonance, for walls and jumps, where no box is known; those of
     /// [`Oscillator::slow_flow`].
     ///
     /// ```
@@ -119,10 +123,12 @@ impl Oscillator {
         self.second_order()?;
         self.check_frequencies()?;
         let subject = Subject::new(self, question, work)?;
-        let mut value = match (&question.sweep, &question.second) {
-            (None, _) => subject.states()?,
-            (Some(axis), None) => subject.branches(axis)?,
-            (Some(first), Some(second)) => subject.plane(first, second)?,
+        let unforced = subject.rotating.unforced();
+        let mut value = match (unforced, &question.sweep, &question.second) {
+            (Some(free), ..) => subject.unforced(free, question)?,
+            (None, None, _) => subject.states()?,
+            (None, Some(axis), None) => subject.branches(axis)?,
+            (None, Some(first), Some(second)) => subject.plane(first, second)?,
         };
         if let (Some(axis), None, true) = (&question.sweep, &question.second, question.follow) {
             value.followed = Some(subject.followed(axis)?);
@@ -157,6 +163,8 @@ impl Oscillator {
                 "combination resonance of {}: the force fixes one combination of their phases, and {rest}",
                 names.join(", ")
             )));
+        } else if unforced.is_some() {
+            remarks.push(Remark(subject.of_free_motion()));
         } else if subject.rotating.fixed < subject.rotating.turns.len() {
             let text = "the resonances of these orders leave a phase free: a motion that is steady in another \
                         rotating frame is none of these states";
@@ -187,7 +195,7 @@ impl Subject<'_> {
         let mut response = self.empty(reach, complete);
         let mut states = self.shown_states(None, &system, &found).ok_or(Error::NoValue)?;
         if let Some(free) = &self.rotating.free {
-            self.with_free_phase(free, reach, &system, &mut states)?;
+            self.with_free_phase(free, reach, &values, &mut states)?;
         }
         response.states.push(states);
         Ok(response)

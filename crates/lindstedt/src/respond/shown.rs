@@ -37,6 +37,7 @@ impl Subject<'_> {
                 phases: w.chunks_exact(2).map(phase).collect(),
                 stable: self.is_stable(point, rate),
                 exponents: self.exponents(point, rate),
+                frequency: None,
             }
         };
         let steady::Branch { points, closed, complete } = branch;
@@ -89,9 +90,19 @@ impl Subject<'_> {
             let (amplitudes, phases) = polar?.into_iter().unzip();
             let stable = self.is_stable(&point, rate);
             let exponents = self.exponents(&point, rate);
-            let drift = Vec::new();
+            let (drift, frequency) = (Vec::new(), None);
             let growth = self.growth(&values, &point.at);
-            list.push(State { amplitudes, phases, stable, exponents, drift, at: point.at, growth });
+            let at = point.at;
+            list.push(State {
+                amplitudes,
+                phases,
+                stable,
+                exponents,
+                frequency,
+                drift,
+                at,
+                growth,
+            });
         }
         let size = |state: &State| state.at.iter().map(|x| x * x).sum::<f64>();
         list.sort_by(|a, b| size(b).total_cmp(&size(a)).then(b.at[0].total_cmp(&a.at[0])));
@@ -106,7 +117,7 @@ impl Subject<'_> {
         })
     }
 
-    fn shown_sample(&self, value: &Exact) -> Option<Number> {
+    pub(super) fn shown_sample(&self, value: &Exact) -> Option<Number> {
         let exact = match (value.as_rational(), &self.factor, &self.small) {
             (Some(q), Some(factor), Some(small)) => {
                 let rate = Rational::from(q * small) + self.slow.system.force();

@@ -8,7 +8,7 @@ use crate::motion::Harmonics;
 use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Oscillator, Remark, SlowFlow, Work};
 use lindstedt_equation::Expression;
-use lindstedt_evaluation::rotating::{NoFrame, Rotating, forced_part, rotating};
+use lindstedt_evaluation::rotating::{FAMILY, NoFrame, Rotating, forced_part, rotating};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::interval::Interval;
 use lindstedt_orbit::steady::{self, Course, Limits, System, Value, all_zeros, bound, follow};
@@ -43,8 +43,8 @@ fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<R
     if !found.whole && varies {
         return Err(not_whole());
     }
-    if found.fixed == 0 {
-        return Err(uncoupled(order));
+    if found.fixed == 0 && found.unforced().is_none() {
+        return Err(uncoupled(order, slow.system.forces.is_empty()));
     }
     Ok(found)
 }
@@ -73,12 +73,18 @@ impl<'a> Subject<'a> {
                 case = case.with(&known, value);
             }
         }
+        // That of a family is no parameter of the equations.
+        if !problem.others.is_empty() {
+            case = case.without(FAMILY);
+        }
         let asked = |case: &Oscillator| whole(case.flow(order, work)?.value, order);
         let mut slow = asked(&case);
         let mut factor = None;
         let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
         let open = |slow: &SlowFlow, name: &String| {
-            slow.system.symbols.contains(name) && !independent(slow, name) && !is_unit(slow, name)
+            let family = name == FAMILY && !slow.energy.is_empty();
+            let own = slow.system.symbols.contains(name) && !is_unit(slow, name);
+            family || own && !independent(slow, name)
         };
         if let Some(axis) = &question.sweep
             && axis.name != small
@@ -142,6 +148,7 @@ impl<'a> Subject<'a> {
                 let name = self.oscillator.problem().small.to_string();
                 Err(DerivationError::Unset { problem, name }.into())
             }
+            Some((name, _)) if name == FAMILY => Err(no_amplitude("has no value")),
             Some((name, _)) => Err(DerivationError::Unset { problem, name: name.clone() }.into()),
             None if self.amplitude.is_some_and(|a| !a.is_finite() || a <= 0.0) => {
                 let message = "the largest amplitude is a positive number";
@@ -164,6 +171,11 @@ impl<'a> Subject<'a> {
         Some(Remark(format!(
             "a frequency is irrational: the states are those of all coefficients within {radius:.1e}{left}"
         )))
+    }
+
+    /// Whether motions are families of one parameter.
+    pub(super) fn is_family(&self) -> bool {
+        self.rotating.unforced().is_some_and(|free| free.energy.is_some())
     }
 
     /// Whether what is found of the flow is found of the whole one.
@@ -257,11 +269,22 @@ impl<'a> Subject<'a> {
     /// The largest |w_j| that is looked at, and whether it has all states: that asked for, else a bound of the
     /// steady states of order one.
     pub(super) fn reach(&self, at: &[Values]) -> Result<(f64, bool), Error> {
-        let largest = |flow: &steady::Flow| {
-            at.iter().try_fold(0.0f64, |most, values| Some(most.max(bound(&flow.system(values))?)))
+        let largest = |rotating: &Rotating| {
+            let bound = |values: &Values| match rotating.unforced() {
+                Some(free) => free.bound(values),
+                None => bound(&rotating.flow.system(values)),
+            };
+            at.iter().try_fold(0.0f64, |most, values| Some(most.max(bound(values)?)))
         };
-        let whole = largest(&self.rotating.flow);
+        let still = |values: &Values| {
+            values.last().is_some_and(|it| it.as_ref().is_some_and(|it| it.interval().low() <= 0.0))
+        };
+        if self.is_family() && at.iter().any(still) {
+            return Err(no_amplitude("is a positive number"));
+        }
+        let whole = largest(&self.rotating);
         let reach = match self.amplitude {
+            None if self.is_family() => whole.ok_or(Error::NoValue)?,
             // Not further than there can be states.
             Some(amplitude) => whole.map_or(amplitude / 2.0, |r| (ROOM * r).min(amplitude / 2.0)),
             None => {
@@ -269,7 +292,7 @@ impl<'a> Subject<'a> {
                 // A box to look in: terms of high degree that are almost zero bound nothing.
                 let sure = SlowFlow { doubtful: Vec::new(), ..self.slow.clone() };
                 let first = rotating(&sure, &small, 1).map_err(no_frame)?;
-                let bound = largest(&first.flow).ok_or_else(|| {
+                let bound = largest(&first).ok_or_else(|| {
                     let message = "no bound of the steady states follows from the first order";
                     Refused::undecided("box", message, "--box AMPLITUDE says how far to look")
                 })?;
@@ -429,8 +452,8 @@ fn is_unset(error: &Error, name: &str) -> bool {
 fn no_frame(why: NoFrame) -> Error {
     let (message, hint) = match why {
         NoFrame::NoForce => (
-            "without a force there is no response: the phase of a steady state is free",
-            "`lindstedt derive --normalisation free` has the slow flow, `simulate` the motions; of one unknown `evaluate` has the periodic ones",
+            "without a force the phase of a steady state is free: the motions that lock are looked for of two unknowns",
+            "of one unknown `lindstedt evaluate` has the periodic motions; `derive --normalisation free` has the slow flow, `derive --mode` normal modes, `simulate` the motions",
         ),
         _ => (
             "forces of different detunings act on the same amplitudes: these are steady in no frame, they beat",
@@ -460,7 +483,19 @@ fn is_unit(slow: &SlowFlow, name: &str) -> bool {
     slow.system.unit.as_ref().is_some_and(|unit| unit.name == name)
 }
 
-fn uncoupled(order: usize) -> Error {
+fn no_amplitude(what: &str) -> Error {
+    let message = format!(
+        "energy is conserved: normal modes are families over their amplitude, which {what}"
+    );
+    Refused::usage("no-value-set", message, "--set amplitude=1, or --sweep amplitude=0.1..2").into()
+}
+
+fn uncoupled(order: usize, free: bool) -> Error {
+    if free {
+        let message = format!("up to order {order} no resonance ties the phases of the unknowns");
+        let hint = "`lindstedt derive --mode 1` has normal modes, `derive --normalisation free` the slow flow; a higher --order";
+        return Refused::no_answer("no-response", message, hint).into();
+    }
     let message = format!("up to order {order} no resonance couples the force to an amplitude");
     let hint =
         "a frequency nearer to a resonance (or the detuning as a parameter), a higher --order";

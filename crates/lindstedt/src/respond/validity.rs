@@ -12,7 +12,9 @@ impl Subject<'_> {
     /// that add anything.
     pub(super) fn growth(&self, values: &Values, at: &[f64]) -> f64 {
         let moduli: Vec<f64> = at.chunks_exact(2).map(|w| w[0].hypot(w[1])).collect();
-        let (turns, values) = (&self.rotating.turns, doubles(values));
+        let (turns, mut values) = (&self.rotating.turns, doubles(values));
+        // The amplitude of a family is none of them.
+        values.truncate(self.slow.system.symbols.len() + 1);
         let mut sizes = order_sizes(&self.slow, turns, &values, &moduli, self.order);
         // Those of free motion are in the time of the unit of frequency.
         sizes[0] *= self.unit().map_or(1.0, |unit| unit.midpoint().to_f64());

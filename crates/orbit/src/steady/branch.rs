@@ -78,7 +78,7 @@ pub(super) fn eigenvalues(n: usize, rows: &[f64]) -> Vec<Complex<f64>> {
         let root = Complex::new(square, 0.0).sqrt();
         return vec![root + half, -root + half];
     }
-    if rows.iter().any(|x| !x.is_finite()) {
+    if n == 0 || rows.iter().any(|x| !x.is_finite()) {
         return Vec::new();
     }
     DMatrix::from_row_slice(n, n, rows).complex_eigenvalues().iter().copied().collect()

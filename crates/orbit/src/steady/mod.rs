@@ -7,7 +7,7 @@
 //!   too ([`Survey`]).
 //! * Folds, Hopf points, cusps, Bogdanov-Takens points: zeros of larger polynomial systems, proved by the same test
 //!   ([`Flow::change_near`]); their curves over two parameters ([`Plane`]).
-//! * Motions that are steady but for a phase that the flow leaves free ([`FreePhase`]).
+//! * Motions that are steady but for a phase that the flow leaves free, and their families ([`FreePhase`]).
 //! * Where a start state goes ([`settle`]).
 //!
 //! ```
@@ -52,7 +52,7 @@ pub use krawczyk::{Region, Zero, zero_near};
 pub use plane::{Curve, Diagram, Plane};
 pub use polynomial::{Polynomial, System};
 pub use quiet::all_states;
-pub use relative::FreePhase;
+pub use relative::{FreePhase, Turning};
 pub use search::{Found, Limits, all_zeros, bound};
 pub use settle::{Fate, settle};
 pub use survey::{Located, Response, Survey};

@@ -75,6 +75,16 @@ impl Polynomial {
         constant
     }
 
+    /// The same in the variables n, n + 1, ...
+    #[must_use]
+    pub fn after(&self, n: usize) -> Self {
+        let moved = |(exponents, c): (&Vec<u32>, &Coefficient)| {
+            let all = std::iter::repeat_n(0, if exponents.is_empty() { 0 } else { n });
+            (all.chain(exponents.iter().copied()).collect(), c.clone())
+        };
+        Self { terms: self.terms.iter().map(moved).collect() }
+    }
+
     /// The derivative by the variable i.
     #[must_use]
     pub fn by(&self, i: usize) -> Self {

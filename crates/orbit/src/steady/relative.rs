@@ -7,13 +7,25 @@
 //!   Re g_c = 0,   g_o = i (d_o/d_c) Im(g_c) y:
 //!
 //! three equations of a and y, whose zeros are isolated, also beside w = 0. All of them have |y| <= L for one c or
-//! |y| <= 1/L for the other.
+//! |y| <= 1/L for the other. Of whole weights n_1, n_2 without a common divisor w_c > 0 leaves |n_c| phases: as many zeros are
+//! one motion.
+//!
+//! Where an energy E_1 |w_1|^2 + E_2 |w_2|^2 + ... is conserved (Lyapunov 1907: normal modes), such motions are families of one
+//! parameter: the balance of energy makes one equation follow from the others, up to terms beyond the order of a truncated
+//! flow. In its place the amplitude A of the family is given, E_1 A^2 = 4 (E_1 |w_1|^2 + E_2 |w_2|^2), and G_j = (i d_j delta + beta) w_j:
+//!
+//!   g_o = (i (d_o/d_c) Im(g_c) + Re g_c) y.
 
-use super::branch::eigenvalues;
-use super::{ComplexTerm, Flow, Polynomial, System};
+use super::branch::{eigenvalues, follow};
+use super::krawczyk::newton;
+use super::survey::{Located, crossing, located};
+use super::{
+    Branch, Change, ComplexTerm, Course, Flow, Point, Polynomial, System, Value, Zero, bound,
+};
 use nalgebra::Complex;
 use rug::Rational;
 use rug::ops::Pow;
+use std::f64::consts::PI;
 
 /// A flow of two complex unknowns with a free phase.
 #[derive(Clone, Debug)]
@@ -22,9 +34,25 @@ pub struct FreePhase {
     pub equations: [Vec<ComplexTerm>; 2],
     /// d_1, d_2, not 0.
     pub weights: [Rational; 2],
-    /// The names of the parameters of G.
+    /// The names of the parameters of G; of families the last is A.
     pub parameters: Vec<String>,
+    /// E_1 and E_2 of families, in the parameters.
+    pub energy: Option<[Polynomial; 2]>,
 }
+
+/// A branch of such motions.
+#[derive(Clone, Debug)]
+pub struct Turning {
+    /// w and the parameter, the exponents without those that are 0 for every such motion.
+    pub branch: Branch,
+    /// delta at its points.
+    pub rates: Vec<f64>,
+    /// Where motions change, in w and the parameter; Hopf points are not proved.
+    pub changes: Vec<Located>,
+}
+
+/// An amplitude that is zero, in parts of the reach.
+const SMALL: f64 = 1e-6;
 
 type Complexes = [Polynomial; 2];
 
@@ -34,20 +62,94 @@ fn times(a: &Complexes, b: &Complexes) -> Complexes {
 }
 
 impl FreePhase {
+    /// n_1, n_2.
+    fn whole(&self) -> [f64; 2] {
+        let ratio = Rational::from(&self.weights[1] / &self.weights[0]);
+        [ratio.denom().to_f64(), ratio.numer().to_f64()]
+    }
+
+    /// Whether two points lie on one motion, within a distance.
+    #[must_use]
+    pub fn same(&self, a: &[f64], b: &[f64], within: f64) -> bool {
+        let [first, second] = [a, b].map(|w| [w[0].hypot(w[1]), w[2].hypot(w[3])]);
+        let [n, m] = self.whole();
+        let turn = |w: &[f64]| n * w[3].atan2(w[2]) - m * w[1].atan2(w[0]);
+        let off = (turn(a) - turn(b)) / (2.0 * PI);
+        let apart = 2.0 * PI * (off - off.round()).abs() * first[0].min(first[1]);
+        apart < within && first.iter().zip(second).all(|(a, b)| (a - b).abs() < within)
+    }
+
     /// The three equations with w_c = scales\[0\] s and y = scales\[1\] eta, in Re eta, Im eta and s; nothing where G has a
     /// constant part.
     #[must_use]
     pub fn reduced(&self, c: usize, scales: &[Rational; 2]) -> Option<Flow> {
         let of_gauge = self.divided(c, c, scales)?;
-        let of_other = self.divided(1 - c, c, scales)?;
+        let [mut re, mut im] = self.divided(1 - c, c, scales)?;
+        let times_y =
+            |p: &Polynomial, q: &Rational| p * &Polynomial::constant(q * scales[1].clone());
         let ratio = Rational::from(&self.weights[1 - c] / &self.weights[c]);
-        let turn = &of_gauge[1] * &Polynomial::constant(ratio * &scales[1]);
-        let minus = Polynomial::constant((-1).into());
-        let [re, im] = of_other;
+        let turn = times_y(&of_gauge[1], &ratio);
         let [eta_re, eta_im] = [0, 1].map(Polynomial::variable);
-        let rows =
-            vec![of_gauge[0].clone(), re + &(&turn * &eta_im), im + &(&(&turn * &eta_re) * &minus)];
-        Some(Flow::of_rows(rows, self.parameters.clone()))
+        re = re + &(&turn * &eta_im);
+        im = im + &(&times_y(&of_gauge[1], &-ratio) * &eta_re);
+        let Some(energy) = &self.energy else {
+            return Some(Flow::of_rows(vec![of_gauge[0].clone(), re, im], self.parameters.clone()));
+        };
+        let growth = times_y(&of_gauge[0], &Rational::from(-1));
+        re = re + &(&growth * &eta_re);
+        im = im + &(&growth * &eta_im);
+        let s = Polynomial::variable(2);
+        let other = (&eta_re * &eta_re) + &(&eta_im * &eta_im);
+        let other = &other * &Polynomial::constant(scales[1].clone().square());
+        let squares = [Polynomial::constant(1.into()), other];
+        let squares =
+            squares.map(|y| &y * &(&(&s * &s) * &Polynomial::constant(scales[0].clone().square())));
+        let size = self.size(energy, 3, [&squares[c], &squares[1 - c]]);
+        Some(Flow::of_rows(vec![re, im, size], self.parameters.clone()))
+    }
+
+    /// E_1 |w_1|^2 + E_2 |w_2|^2 - E_1 A^2/4, the parameters being the variables from `first` on.
+    fn size(
+        &self,
+        energy: &[Polynomial; 2],
+        first: usize,
+        squares: [&Polynomial; 2],
+    ) -> Polynomial {
+        let [one, two] = energy.each_ref().map(|e| e.after(first));
+        let amplitude = Polynomial::variable(first + self.parameters.len() - 1);
+        let own = &(&amplitude * &amplitude) * &Polynomial::constant(Rational::from((-1, 4)));
+        (&one * squares[0]) + &(&two * squares[1]) + &(&one * &own)
+    }
+
+    /// Some R with |w_j| <= R at all motions: of families from A, else from the terms of highest degree of Re(conj(w_j) G_j) and
+    /// d_2 |w_2|^2 Im(conj(w_1) G_1) - d_1 |w_1|^2 Im(conj(w_2) G_2), which vanish there. Nothing where they have common zeros.
+    #[must_use]
+    pub fn bound(&self, values: &[Option<Value>]) -> Option<f64> {
+        if let Some(energy) = &self.energy {
+            let rows = System::new(energy, values).values(&[] as &[f64]);
+            let amplitude = values.last()?.as_ref()?.interval().above();
+            let most = (rows[0] / rows[1]).sqrt().max(1.0) * amplitude / 2.0;
+            return (most.is_finite() && most > 0.0).then_some(most * (1.0 + 1e-9));
+        }
+        let names: Vec<&str> = self.parameters.iter().map(String::as_str).collect();
+        let rows = Flow::of_complex(&self.equations, &names).rows;
+        let variables: [Polynomial; 4] = std::array::from_fn(Polynomial::variable);
+        let minus = Polynomial::constant((-1).into());
+        let product = |j: usize| {
+            let (x, y) = (&variables[2 * j], &variables[2 * j + 1]);
+            times(&[x.clone(), &minus * y], &[rows[2 * j].clone(), rows[2 * j + 1].clone()])
+        };
+        let square = |j: usize| {
+            let (x, y) = (&variables[2 * j], &variables[2 * j + 1]);
+            &((x * x) + &(y * y)) * &Polynomial::constant(self.weights[j].clone())
+        };
+        let ([first, turn], [second, other]) = (product(0), product(1));
+        let turns = (&turn * &square(1)) + &(&minus * &(&other * &square(0)));
+        // The phase that is free makes w_2 real.
+        let still = Some(Value::Rational(Rational::new()));
+        let given: Vec<_> =
+            [None, None, None, still].into_iter().chain(values.iter().cloned()).collect();
+        bound(&System::new(&[first, second, turns], &given))
     }
 
     /// G_j/a.
@@ -78,18 +180,31 @@ impl FreePhase {
         Some(sum)
     }
 
-    /// delta of a motion w, and the exponents of the deviations from it but the one, 0, along the free phase; `system`
-    /// is G at these parameters.
-    pub fn drift(&self, system: &System, w: &[f64; 4]) -> (f64, Vec<Complex<f64>>) {
-        let (values, mut slopes) = system.derivatives(w);
+    /// delta of a motion w, and the exponents of the deviations from it but those that are 0 for all: one along the free
+    /// phase, and of families one along them; there the others are a pair, its square half the trace of the square.
+    /// `system` is G in w and a parameter that has no value, if there is one.
+    #[must_use]
+    pub fn drift(&self, system: &System, w: &[f64]) -> (f64, Vec<Complex<f64>>) {
+        let (values, slopes) = system.derivatives(w);
         let weights = self.weights.each_ref().map(Rational::to_f64);
         let square = |c: usize| w[2 * c].powi(2) + w[2 * c + 1].powi(2);
         let c = usize::from(square(1) > square(0));
-        let turn = w[2 * c] * values[2 * c + 1] - w[2 * c + 1] * values[2 * c];
-        let delta = turn / square(c) / weights[c];
+        let [x, y, p, q] = [w[2 * c], w[2 * c + 1], values[2 * c], values[2 * c + 1]];
+        let delta = (x * q - y * p) / square(c) / weights[c];
+        let growth = (x * p + y * q) / square(c);
+        let rows = slopes.chunks_exact(system.variables()).flat_map(|row| &row[..4]);
+        let mut slopes: Vec<f64> = rows.copied().collect();
         for (j, d) in weights.iter().enumerate() {
             slopes[8 * j + 2 * j + 1] += delta * d;
             slopes[8 * j + 4 + 2 * j] -= delta * d;
+        }
+        if self.energy.is_some() {
+            (0..4).for_each(|k| slopes[5 * k] -= growth);
+            let entry = |i: usize, j: usize| slopes[4 * i + j] * slopes[4 * j + i];
+            let trace: f64 = (0..16).map(|k| entry(k / 4, k % 4)).sum();
+            let root = Complex::new(0.5 * trace, 0.0).sqrt();
+            let other = if trace < 0.0 { root.conj() } else { Complex::new(-root.re, 0.0) };
+            return (delta, vec![root, other]);
         }
         let mut exponents = eigenvalues(4, &slopes);
         let size = |k: &usize| exponents[*k].norm();
@@ -98,4 +213,179 @@ impl FreePhase {
         }
         (delta, exponents)
     }
+
+    /// G_j - (i d_j delta + beta) w_j, Im w_c, and of families the condition of the energy, in w, delta (and beta): all of them
+    /// vanish at motions, isolated where w_c is not zero.
+    fn unfolded(&self, c: usize) -> Flow {
+        let extra = 1 + usize::from(self.energy.is_some());
+        let equation = |j: usize| -> Vec<ComplexTerm> {
+            let shifted = |term: &ComplexTerm| ComplexTerm {
+                parameters: vec![0; extra].into_iter().chain(term.parameters.clone()).collect(),
+                ..term.clone()
+            };
+            let own = |k: usize, re: Rational, im: Rational| {
+                let (mut amplitudes, mut parameters) = (vec![0; 4], vec![0; extra]);
+                (amplitudes[2 * j], parameters[k]) = (1, 1);
+                ComplexTerm { amplitudes, parameters, re, im, radius: 0.0 }
+            };
+            let turn = own(0, Rational::new(), Rational::from(-&self.weights[j]));
+            let growth = (1..extra).map(|k| own(k, Rational::from(-1), Rational::new()));
+            self.equations[j].iter().map(shifted).chain([turn]).chain(growth).collect()
+        };
+        let names: Vec<&str> = [""; 2][..extra]
+            .iter()
+            .copied()
+            .chain(self.parameters.iter().map(String::as_str))
+            .collect();
+        let mut rows = Flow::of_complex(&[equation(0), equation(1)], &names).rows;
+        rows.push(Polynomial::variable(2 * c + 1));
+        let square = |j: usize| {
+            let [x, y] = [2 * j, 2 * j + 1].map(Polynomial::variable);
+            (&x * &x) + &(&y * &y)
+        };
+        let squares = [square(0), square(1)];
+        let size = self.energy.as_ref().map(|e| self.size(e, 4 + extra, squares.each_ref()));
+        rows.extend(size);
+        Flow::of_rows(rows, self.parameters.clone())
+    }
+
+    /// The branches over the parameter without a value, [`Course::parameter`] counted among the parameters, that pass motions
+    /// at values of it.
+    #[must_use]
+    pub fn branches(
+        &self,
+        values: &[Option<Value>],
+        found: &[(Value, Vec<Vec<f64>>)],
+        course: &Course,
+    ) -> Vec<Turning> {
+        let names: Vec<&str> = self.parameters.iter().map(String::as_str).collect();
+        let flow = Flow::of_complex(&self.equations, &names).system(values);
+        let mut raw: Vec<(Flow, Branch)> = Vec::new();
+        for (value, motions) in found {
+            let at = value.interval().middle();
+            let mut fixed = values.to_vec();
+            fixed[course.parameter] = Some(value.clone());
+            for motion in motions {
+                let known = |(own, branch): &(Flow, Branch)| {
+                    let (system, n) = (own.system(&fixed), own.unknowns());
+                    let is_here = |guess: Vec<f64>| {
+                        let found = newton(&system, &guess);
+                        found.is_some_and(|it| self.same(&it[..4], motion, 1e-7 * course.reach))
+                    };
+                    // An end of the range is met within rounding.
+                    let wide = course.range[1] - course.range[0];
+                    let at_end = |point: &&Point| (point.at[n] - at).abs() < 1e-9 * wide;
+                    let ends = [branch.points.first(), branch.points.last()];
+                    let mut ends = ends.into_iter().flatten().filter(at_end);
+                    let mut pairs = branch.points.windows(2);
+                    ends.any(|end| is_here(end.at[..n].to_vec()))
+                        || pairs
+                            .any(|two| crossing(&two[0].at, &two[1].at, at).is_some_and(is_here))
+                };
+                if raw.iter().any(known) || course.stop.asked() {
+                    continue;
+                }
+                let point: Vec<f64> = motion.iter().copied().chain([at]).collect();
+                raw.extend(self.branch(&flow, values, &point, course));
+            }
+        }
+        let reach = course.reach;
+        let all = raw.into_iter().enumerate();
+        all.map(|(k, (own, branch))| self.turning(&flow, (&own, values), k, branch, reach))
+            .collect()
+    }
+
+    /// The branch through a motion in w, delta (and beta), with the equations it was followed by: that of the w_c that stays away
+    /// from zero along it.
+    fn branch(
+        &self,
+        flow: &System,
+        values: &[Option<Value>],
+        point: &[f64],
+        course: &Course,
+    ) -> Option<(Flow, Branch)> {
+        let moduli = [point[0].hypot(point[1]), point[2].hypot(point[3])];
+        let first = usize::from(moduli[1] > moduli[0]);
+        let mut best: Option<(f64, (Flow, Branch))> = None;
+        for c in [first, 1 - first].into_iter().filter(|c| moduli[*c] > SMALL * course.reach) {
+            let own = self.unfolded(c);
+            let n = own.unknowns();
+            let angle = -point[2 * c + 1].atan2(point[2 * c]) / self.weights[c].to_f64();
+            let turned = |j: usize| {
+                let (sin, cos) = (angle * self.weights[j].to_f64()).sin_cos();
+                [
+                    point[2 * j] * cos - point[2 * j + 1] * sin,
+                    point[2 * j] * sin + point[2 * j + 1] * cos,
+                ]
+            };
+            let mut start = [turned(0), turned(1)].concat();
+            start.push(self.drift(flow, point).0);
+            start.resize(n, 0.0);
+            start.push(point[4]);
+            let unknowns = if self.energy.is_some() { 0 } else { 4 };
+            let course = Course { parameter: n, unknowns, ..course.clone() };
+            let Some(branch) = follow(&own.system(values), &start, &course) else { continue };
+            let size = |point: &Point| point.at[2 * c].abs();
+            let least = branch.points.iter().map(size).fold(f64::INFINITY, f64::min);
+            if best.as_ref().is_none_or(|(other, _)| least > *other) {
+                best = Some((least, (own, branch)));
+            }
+            if least > 0.05 * course.reach {
+                break;
+            }
+        }
+        best.map(|(_, found)| found)
+    }
+
+    /// A branch in w alone.
+    fn turning(
+        &self,
+        flow: &System,
+        (own, values): (&Flow, &[Option<Value>]),
+        index: usize,
+        mut branch: Branch,
+        reach: f64,
+    ) -> Turning {
+        let (mut rates, mut changes) = (Vec::new(), Vec::new());
+        for point in &mut branch.points {
+            let unfolded = point.clone();
+            shorten(&mut point.at, own.unknowns());
+            let (delta, exponents) = self.drift(flow, &point.at);
+            point.exponents = exponents;
+            rates.push(delta);
+            // The exponent 0 along the phase makes the sum with another vanish at folds.
+            point.change = point.change.filter(|it| *it != Change::Hopf || oscillates(point));
+            let Some(change) = point.change else { continue };
+            let found = match change {
+                Change::Hopf => Located { change, branch: index, at: unfolded.at, proved: None },
+                _ => located(own, values, reach, (index, &unfolded, change)),
+            };
+            // Noise beside a degenerate motion is no crossing.
+            if found.change == Change::Crossing && found.proved.is_none() {
+                continue;
+            }
+            let mut found = found;
+            shorten(&mut found.at, own.unknowns());
+            let shortened = |mut zero: Zero| {
+                shorten(&mut zero.enclosure, own.unknowns());
+                shorten(&mut zero.unique_within, own.unknowns());
+                zero
+            };
+            found.proved = found.proved.map(shortened);
+            changes.push(found);
+        }
+        Turning { branch, rates, changes }
+    }
+}
+
+/// w and the parameter, of w, delta (beta), the parameter.
+fn shorten<T>(all: &mut Vec<T>, unknowns: usize) {
+    all.drain(4..unknowns);
+    all.truncate(5);
+}
+
+/// Whether exponents lie on the imaginary axis, not at 0.
+fn oscillates(point: &Point) -> bool {
+    let size = point.exponents.iter().fold(0.0f64, |m, x| m.max(x.norm()));
+    point.exponents.iter().any(|x| x.re.abs() < 1e-6 * size && x.im.abs() > 1e-6 * size)
 }

@@ -117,7 +117,7 @@ impl Survey<'_> {
         let Some(found) = all_zeros(&turning, &region, &limits) else { return false };
         for fold in found.zeros.iter().map(Zero::middle) {
             let is_here = |point: &Point| {
-                point.change == Some(Change::Fold) && self.same(&point.at, &fold, NEAR)
+                point.change == Some(Change::Fold) && near(&point.at, &fold, course.reach)
             };
             if branches.iter().flat_map(|branch| &branch.points).any(is_here) {
                 continue;
@@ -130,45 +130,59 @@ impl Survey<'_> {
         found.is_proved()
     }
 
-    /// Whether two points are the same within parts of the reach.
-    fn same(&self, a: &[f64], b: &[f64], parts: f64) -> bool {
-        a.iter().zip(b).all(|(a, b)| (a - b).abs() < parts * self.course.reach)
-    }
-
     fn changes(&self, branches: &[Branch]) -> Vec<Located> {
         let marked = branches.iter().enumerate().flat_map(|(index, branch)| {
             branch.points.iter().filter_map(move |point| Some((index, point, point.change?)))
         });
         let mut list: Vec<Located> = Vec::new();
-        for (branch, point, mut change) in marked {
-            let near = |change| self.flow.change_near(change, &self.values, &point.at);
-            let (mut at, mut proved) = (point.at.clone(), None);
-            if change != Change::Crossing {
-                proved = near(change);
-            }
-            // Where branches cross one of them may turn back; and continuation ends a little before the point.
-            if matches!(change, Change::Fold | Change::Crossing)
-                && proved.is_none()
-                && let Some(zero) = near(Change::Crossing)
-                && self.same(&zero.middle()[..at.len()], &at, NEAR)
-            {
-                (change, at) = (Change::Crossing, zero.middle()[..at.len()].to_vec());
-                proved = Some(zero);
-            }
-            let same = |known: &Located| known.change == change && self.same(&known.at, &at, NEAR);
+        for (branch, point, change) in marked {
+            let found =
+                located(self.flow, &self.values, self.course.reach, (branch, point, change));
+            let (change, at) = (found.change, &found.at);
+            let same =
+                |known: &Located| known.change == change && near(&known.at, at, self.course.reach);
             // Each of two branches knows their crossing.
             if change == Change::Crossing && list.iter().any(same) {
                 continue;
             }
-            list.push(Located { change, branch, at, proved });
+            list.push(found);
         }
         list.sort_by(|a, b| a.at[a.at.len() - 1].total_cmp(&b.at[b.at.len() - 1]));
         list
     }
 }
 
+/// Whether two points are the same within a part of the reach.
+fn near(a: &[f64], b: &[f64], reach: f64) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < NEAR * reach)
+}
+
+/// A change that was found on a branch, with proof if there is one.
+pub(super) fn located(
+    flow: &Flow,
+    values: &[Option<Value>],
+    reach: f64,
+    (branch, point, mut change): (usize, &Point, Change),
+) -> Located {
+    let proof = |change| flow.change_near(change, values, &point.at);
+    let (mut at, mut proved) = (point.at.clone(), None);
+    if change != Change::Crossing {
+        proved = proof(change);
+    }
+    // Where branches cross one of them may turn back; and continuation ends a little before the point.
+    if matches!(change, Change::Fold | Change::Crossing)
+        && proved.is_none()
+        && let Some(zero) = proof(Change::Crossing)
+        && near(&zero.middle()[..at.len()], &at, reach)
+    {
+        (change, at) = (Change::Crossing, zero.middle()[..at.len()].to_vec());
+        proved = Some(zero);
+    }
+    Located { change, branch, at, proved }
+}
+
 /// The unknowns between two points where the parameter, their last entry, has a value.
-fn crossing(a: &[f64], b: &[f64], value: f64) -> Option<Vec<f64>> {
+pub(super) fn crossing(a: &[f64], b: &[f64], value: f64) -> Option<Vec<f64>> {
     let ((last_a, a), (last_b, b)) = (a.split_last()?, b.split_last()?);
     if (last_a - value) * (last_b - value) > 0.0 {
         return None;

@@ -490,7 +490,8 @@ fn steady_but_for_a_phase() {
         vec![term([0, 0, 1, 0], -mu.clone(), zero()), term([0, 1, 0, 0], zero(), h.clone())];
     let equations = [first, second];
     let flow = Flow::of_complex(&equations, &[]).system(&[]);
-    let free = FreePhase { equations, weights: [1, -1].map(Rational::from), parameters: vec![] };
+    let weights = [1, -1].map(Rational::from);
+    let free = FreePhase { equations, weights, parameters: vec![], energy: None };
     let region = [Interval::new(-1.0, 1.0), Interval::new(-1.0, 1.0), Interval::new(0.0, 1.0)];
     let limits = Limits { modulus: Some(1.0), ..Limits::default() };
     let divide = Rational::from((137, 100));

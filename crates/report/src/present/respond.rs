@@ -48,15 +48,28 @@ fn drifts(states: &States) -> bool {
     states.list.iter().any(|state| !state.drift.is_empty())
 }
 
+/// Whether states have frequencies of their own: those without a force.
+fn is_free(states: &States) -> bool {
+    states.list.iter().any(|state| state.frequency.is_some())
+}
+
+/// An estimate that may be missing.
+fn frequency(x: Option<Estimate>) -> String {
+    x.map_or("-".to_owned(), |x| format!("{:.9}", x.value))
+}
+
 fn columns(value: &Response) -> impl Iterator<Item = Text> {
     (0..value.turns.len()).flat_map(|j| [amplitude(value, j), phase(value, j)])
 }
 
-fn state(state: &State, drifts: bool) -> Vec<Text> {
+fn state(state: &State, free: bool, drifts: bool) -> Vec<Text> {
     let pairs = state.amplitudes.iter().zip(&state.phases);
     let phase = |phase: &Option<Number>| phase.as_ref().map_or("-".into(), Text::number);
     let mut cells: Vec<Text> = pairs.flat_map(|(a, p)| [Text::number(a), phase(p)]).collect();
     let exponents: Vec<String> = state.exponents.iter().map(exponent).collect();
+    if free {
+        cells.push(frequency(state.frequency).into());
+    }
     cells.extend([word(state.stable).into(), exponents.join(", ").into()]);
     if drifts {
         let rates = state.drift.iter().map(|rate| format!("{:.6}", rate.value));
@@ -66,10 +79,12 @@ fn state(state: &State, drifts: bool) -> Vec<Text> {
 }
 
 fn states(value: &Response, states: &States) -> Table {
-    let head = columns(value).chain(["stability".into(), "exponents".into()]);
-    let drifts = drifts(states);
+    let free = is_free(states);
+    let drifts = drifts(states) && !free;
+    let head = columns(value).chain(free.then(|| "frequency".into()));
+    let head = head.chain(["stability".into(), "exponents".into()]);
     let head = head.chain(drifts.then(|| "rates in the frame".into()));
-    let rows = states.list.iter().map(|it| state(it, drifts));
+    let rows = states.list.iter().map(|it| state(it, free, drifts));
     rows.fold(Table::new(head), Table::row)
 }
 
@@ -352,10 +367,12 @@ impl Present for Answer<Response> {
                 .map(|j| index(value, j))
                 .flat_map(|j| [format!("amplitude{j}"), format!("phase{j}")]),
         );
+        let points = value.branches.iter().flat_map(|branch| &branch.points);
+        let free = points.clone().any(|point| point.frequency.is_some());
+        head.extend(free.then(|| "frequency".to_owned()));
         head.push("stable".to_owned());
-        let exponents =
-            (1..=2 * value.turns.len()).flat_map(|k| [format!("re_{k}"), format!("im_{k}")]);
-        head.extend(exponents);
+        let longest = points.map(|point| point.exponents.len()).max().unwrap_or(0);
+        head.extend((1..=longest).flat_map(|k| [format!("re_{k}"), format!("im_{k}")]));
         let branches = value.branches.iter().enumerate();
         let rows = branches.flat_map(|(n, branch)| branch.points.iter().map(move |p| (n, p)));
         let digits = |x: &Estimate| format!("{:?}", x.value);
@@ -364,6 +381,7 @@ impl Present for Answer<Response> {
             let mut cells = vec![n.to_string(), digits(&point.value)];
             let pairs = point.amplitudes.iter().zip(&point.phases);
             cells.extend(pairs.flat_map(|(a, phase)| [digits(a), digits(phase)]));
+            cells.extend(free.then(|| point.frequency.as_ref().map_or(String::new(), digits)));
             cells.push(word(point.stable).to_owned());
             cells.extend(point.exponents.iter().flatten().map(digits));
             table.row(cells)
