@@ -5,15 +5,16 @@ use crate::clock;
 use crate::constants::Constants;
 use crate::derivation::{Derivation, Solution};
 use crate::error::DerivationError;
+use crate::exponent::proved_exponent;
 use crate::found::Found;
 use crate::limits::{Bytes, bytes_of, check_parameters, has_logarithms, limit_memory};
 use crate::prepare::{Prepared, prepare};
-use crate::series::{Powers, energy_integral, series, undo_time_scale};
+use crate::series::{NamedSeries, Powers, energy_integral, series, undo_time_scale};
 use crate::settings::{Route, Settings, condition};
 use crate::work::Progress;
 use lindstedt_algebra::{RationalAlgebra, Stop};
 use lindstedt_coeff::PolynomialRing;
-use lindstedt_equation::{Condition, Problem};
+use lindstedt_equation::{Condition, Problem, Quantity};
 use lindstedt_expand::{
     ExpandError, OrderWork, Request, check, compile, expand, leading_amplitude,
 };
@@ -97,6 +98,17 @@ pub fn derive(
     let how = (condition, &stop);
     let given = amplitude.as_ref();
     let mut series = series(problem, &ring, how, powers, amplitudes, given, &stiffness)?;
+    if let Solution::Rational(cycle) = &solution
+        && condition == Condition::LimitCycle
+        && let Some(exponent) = proved_exponent(&problem.equation, cycle)
+    {
+        let coefficients = exponent.iter().map(|q| ring.rational(q)).collect();
+        series.push(NamedSeries {
+            quantity: Quantity::FloquetExponent,
+            half_power: 0,
+            coefficients,
+        });
+    }
     undo_time_scale(&mut series, &ring, &time_scale);
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
     let amplitude = match amplitude {

@@ -20,6 +20,7 @@ mod derivation;
 mod derive;
 pub mod energy;
 mod error;
+mod exponent;
 mod found;
 mod json;
 mod limits;

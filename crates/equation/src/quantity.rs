@@ -27,6 +27,8 @@ pub enum Quantity {
     Amplitude,
     /// x(0), where the first harmonic is fixed.
     InitialDisplacement,
+    /// The Floquet exponent of a limit cycle that is not 0.
+    FloquetExponent,
     /// a'/a of an averaged motion.
     GrowthRate,
     /// x as a function of the phase.
@@ -35,12 +37,13 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Frequency,
         Self::FrequencySquared,
         Self::Period,
         Self::Amplitude,
         Self::InitialDisplacement,
+        Self::FloquetExponent,
         Self::GrowthRate,
         Self::Solution,
     ];
@@ -48,7 +51,7 @@ impl Quantity {
     pub const POWERS: [Self; 3] = [Self::FrequencySquared, Self::Frequency, Self::Period];
 
     /// `frequency`, `frequency_squared`, `period_over_2pi`, `amplitude`, `initial_displacement`,
-    /// `growth_rate`, `solution`.
+    /// `floquet_exponent`, `growth_rate`, `solution`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -57,17 +60,18 @@ impl Quantity {
             Self::Period => "period_over_2pi",
             Self::Amplitude => "amplitude",
             Self::InitialDisplacement => "initial_displacement",
+            Self::FloquetExponent => "floquet_exponent",
             Self::GrowthRate => "growth_rate",
             Self::Solution => "solution",
         }
     }
 
-    /// The power of omega that it is: 2, 1 or -1; 0 for what is none.
+    /// The power of 1/t that it is: 2, 1 or -1; 0 for what is none.
     #[must_use]
     pub const fn power(self) -> i32 {
         match self {
             Self::FrequencySquared => 2,
-            Self::Frequency => 1,
+            Self::Frequency | Self::FloquetExponent => 1,
             Self::Period => -1,
             _ => 0,
         }

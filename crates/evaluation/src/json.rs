@@ -159,6 +159,10 @@ impl Serialize for Evaluation {
         map.serialize_entry("period", &self.period)?;
         map.serialize_entry("frequency", &self.frequency)?;
         map.serialize_entry("exact_period", &self.exact_period)?;
+        if let Some(found) = &self.stability {
+            map.serialize_entry("floquet_exponent", &found.floquet_exponent)?;
+            map.serialize_entry("stable", &found.stable)?;
+        }
         map.serialize_entry("verdict", &self.verdict)?;
         map.serialize_entry("true_error", &self.true_error)?;
         map.serialize_entry("asked", self.asked.map_or("auto", |_| method))?;

@@ -46,7 +46,7 @@ pub use expansion::{Carried, Expansion};
 pub use fourier::Fourier;
 pub use json::Place;
 pub use names::{kind_name, method_name, rounded, with_error};
-pub use period::{Evaluation, Improved, default_order, period};
+pub use period::{Evaluation, Improved, Stability, default_order, period};
 pub use periodic::PeriodicSolution;
 pub use solution::{Question, Trajectory, default_solution_order};
 pub use solution_function::SolutionFunction;

@@ -1,6 +1,7 @@
 //! The period at given parameters: the sum of the series of T/2pi, beside the closed form where
 //! there is one.
 
+use crate::averaged::exponent;
 use crate::digits::bits_for;
 use crate::displacements::Displacements;
 use crate::error::EvaluationError as Error;
@@ -14,7 +15,7 @@ use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number, Status, certified};
 use lindstedt_series::resummation::{Method, Picture, Resummed, Sample, resum_with};
-use rug::Float;
+use rug::{Float, Rational};
 use serde::Serialize;
 
 /// A period and how it was found.
@@ -36,6 +37,10 @@ pub struct Evaluation {
     pub exact_period: Option<Number>,
     /// |period - exact period|, where both are known.
     pub true_error: Option<String>,
+    /// Of a limit cycle, where it was asked for.
+    pub stability: Option<Stability>,
+    /// Orders 0, 1, ... of its Floquet exponent, and the value of the small parameter.
+    pub(crate) exponent: Option<(Vec<Rational>, Exact)>,
     /// What was done, what the alternatives gave, what the coefficients tell.
     pub resummed: Resummed,
     /// The best truncation of a divergent series: order and partial sum of T.
@@ -62,6 +67,16 @@ pub struct Evaluation {
     pub improved: Option<Improved>,
 }
 
+/// The stability of a limit cycle by the sum of its exponent.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Stability {
+    /// Per unit of t; nothing where not one digit is supported.
+    pub floquet_exponent: Option<Number>,
+    /// Whether it is negative; nothing where the estimated error leaves it open.
+    pub stable: Option<bool>,
+}
+
 /// Why the period is not that of the sum.
 #[derive(Clone, Debug, Serialize)]
 pub struct Improved {
@@ -78,6 +93,15 @@ impl Evaluation {
     #[must_use]
     pub fn is_without_estimate(&self) -> bool {
         self.period.as_ref().is_some_and(|period| period.status == Status::NoEstimate)
+    }
+
+    /// Sums the Floquet exponent of a limit cycle, by Pade approximants: whether it is stable.
+    pub fn find_stability(&mut self, work: &Work) {
+        self.stability = self.exponent.as_ref().map(|(series, small)| {
+            let (floquet_exponent, stable) =
+                exponent(series, small, work.printed_digits(), &work.stop);
+            Stability { floquet_exponent, stable }
+        });
     }
 
     /// The same with a period in the place of the sum's; the error is an estimate, too.
@@ -147,11 +171,15 @@ pub fn period(
     let picture = last.and_then(|sample| shared.picture(&sample, accuracy, stop));
     goes_on()?;
     let (period, frequency) = (sum.number(&sum.period, digits), sum.frequency(digits));
+    let small = setting.small_alone().filter(|_| !source.exponent.is_empty());
+    let exponent = small.map(|small| (source.exponent.clone(), small.clone()));
     let mut result = Evaluation {
         order,
         period,
         frequency,
         exact_period,
+        stability: None,
+        exponent,
         true_error: sum.difference.as_ref().map(short),
         resummed,
         best_truncation,

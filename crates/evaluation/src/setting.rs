@@ -228,9 +228,14 @@ impl Setting {
         power.map_or_else(|| balls.indeterminate(), |power| balls.mul(&coefficient, &power))
     }
 
-    /// The small parameter where it is a rational number of its own.
+    /// The small parameter where it is a number of its own.
+    pub fn small_alone(&self) -> Option<&Exact> {
+        (self.small.power == 0).then_some(&self.small.coefficient)
+    }
+
+    /// The same where it is rational.
     pub fn small_rational(&self) -> Option<&Rational> {
-        self.small.coefficient.as_rational().filter(|_| self.small.power == 0)
+        self.small_alone()?.as_rational()
     }
 
     /// The expansion.

@@ -37,6 +37,8 @@ pub struct Source {
     pub closed: Option<(String, Formula)>,
     /// What is proved about the radius of convergence: its value, and why.
     pub radius: Option<(f64, &'static str)>,
+    /// Orders 0, 1, ... of the Floquet exponent of a limit cycle; else empty.
+    pub exponent: Vec<Rational>,
     /// The change of variable u = x/(scale + x).
     map: Option<ChangeOfVariable>,
     /// The coefficient of small^(n step) in T/2pi over the factor is t_n ratio^(n step).
@@ -109,6 +111,7 @@ impl Source {
             factor: Box::new(|balls| Some(balls.one())),
             closed: None,
             radius: None,
+            exponent: Vec::new(),
             map: None,
             step: 1,
             ratio: Rational::from(1),
@@ -197,6 +200,7 @@ fn power_law(
         )),
         radius: Some((1.0, "the period is singular at delta = -1")),
         // sqrt(1 - u) T/2pi = Gamma(2-u) 2^u/Gamma(1-u/2)^2 has its nearest pole at u = 3.
+        exponent: Vec::new(),
         map: Some(ChangeOfVariable {
             scale: Rational::from(1),
             prefactor: Rational::from((1, 2)),
@@ -231,6 +235,7 @@ fn sums(setting: &Setting, order: usize, stop: &Stop) -> Source {
         closed,
         // int x^(1 + 2 k delta) dx: a pole of the potential for every k.
         radius: Some((0.0, "the potential has poles at delta = -1/k for all k")),
+        exponent: Vec::new(),
         map: None,
         step: 1,
         ratio: Rational::from(1),
@@ -361,6 +366,7 @@ impl Cubic {
             closed: Some(self.closed),
             radius: Some((1.0, "the separatrix at rho = -1")),
             // sqrt(1 + rho) T/4 = K(k), 2 k^2 = u: analytic for |u| < 2; T ~ rho^(-1/2).
+            exponent: Vec::new(),
             map: Some(ChangeOfVariable {
                 scale: Rational::from(1),
                 prefactor: Rational::from((-1, 2)),
@@ -382,6 +388,10 @@ fn derived(setting: &Setting, series: Series) -> Source {
         Some((small, meaning)) => format!("{small}^{step}, {small} = {meaning}"),
         None => format!("{name}^{step}"),
     };
+    let rational = |c| series.derivation.ring.as_rational(c);
+    let exponent = series.derivation.named(Quantity::FloquetExponent);
+    let exponent: Option<_> = exponent.map(|e| e.coefficients.iter().map(rational).collect());
+    let exponent = exponent.flatten().unwrap_or_default();
     let coefficients = series.floats(Rational::from(1));
     let step_power = i64::try_from(step).unwrap_or(1);
     // T ~ small for relaxation oscillations; small f(x) alone makes the time scale small^(-1/2).
@@ -405,6 +415,7 @@ fn derived(setting: &Setting, series: Series) -> Source {
         factor: Box::new(|balls| Some(balls.one())),
         closed: None,
         radius: None,
+        exponent,
         map: Some(ChangeOfVariable { scale, prefactor: power, radius: None }),
         step,
         ratio: Rational::from(1),

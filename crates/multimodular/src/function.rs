@@ -51,6 +51,17 @@ impl Function {
         over(cosines.map(|(_, c)| c).sum(), &self.denominator.factors())
     }
 
+    /// The denominator, and for every coefficient the harmonic, whether it belongs to the sine, and its numerator.
+    pub fn numerators(&self) -> (&Integer, impl Iterator<Item = (usize, bool, &Integer)>) {
+        let place = |(place, c)| match place {
+            &Place::Cosine(k) => Some((k, false, c)),
+            &Place::Sine(k) => Some((k, true, c)),
+            Place::Squared | Place::Frequency | Place::Period => None,
+        };
+        let terms = self.terms.iter().map(|(place, c)| (place, c));
+        (self.denominator.number(), terms.filter_map(place))
+    }
+
     /// The coefficients by harmonics, a cosine before the sine.
     #[must_use]
     pub fn fractions(&self) -> Vec<Fraction> {

@@ -250,3 +250,25 @@ fn summed_cycles_against_proved_orbits() {
         }
     }
 }
+
+/// The exponent of van der Pol's cycle beside its period: at eps = 0.4 that of the integration, -0.403974101; the sum to
+/// order 7 alone -0.403974056; with -eps the cycle is unstable.
+#[test]
+fn the_exponent_beside_the_period() {
+    let exponent = |eps: &str, order: usize| {
+        let case = lindstedt::Oscillator::builtin("van-der-pol").unwrap().set("eps", eps).unwrap();
+        let question = lindstedt::Evaluate { order: Some(order), ..lindstedt::Evaluate::default() };
+        let found = case.evaluate(&question, &work()).unwrap().value.stability.unwrap();
+        let number = found.floquet_exponent.unwrap();
+        let error = number.error.as_ref().unwrap().parse::<f64>().unwrap();
+        (number.decimal.parse::<f64>().unwrap(), error, found.stable)
+    };
+    let (value, error, stable) = exponent("2/5", 40);
+    assert!((value + 0.403974101).abs() < 5e-10 && error < 1e-12, "{value} {error}");
+    assert_eq!((stable, exponent("-2/5", 40).2), (Some(true), Some(false)));
+    let [c1, c3, c5, c7] = [-1.0, -1.0 / 16.0, 11.0 / 4608.0, 4859.0 / 5308416.0];
+    let sum = [c7, c5, c3, c1].iter().fold(0.0, |sum, c| sum * 0.16 + c) * 0.4;
+    assert!((sum + 0.403974056_f64).abs() < 5e-10, "{sum}");
+    let (value, error, _) = exponent("2/5", 7);
+    assert!((value + 0.403974101).abs() < error && error < 1e-4, "{value} {error}");
+}

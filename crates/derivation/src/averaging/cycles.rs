@@ -25,7 +25,8 @@ use lindstedt_series::univariate::{
     Residues, positive_roots, rational_root, refined, simple_and_multiple, trim,
 };
 use rug::Rational;
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 /// The limit cycles of an averaged oscillator whose amplitude does not vanish with the small parameter.
 #[derive(Clone, Debug, Serialize)]
@@ -40,14 +41,12 @@ pub struct Cycles {
 }
 
 /// One limit cycle, exact: coefficients are polynomials in r = a_0^2.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Cycle {
     /// m, monic, from the constant on: m(r) = 0. Of degree 1 where r is rational.
-    #[serde(serialize_with = "as_text")]
     pub polynomial: Vec<Rational>,
     /// An interval with r and no other root of m.
-    #[serde(skip)]
     root: [Rational; 2],
     /// a_0, the amplitude at order zero.
     pub amplitude: Number,
@@ -72,8 +71,19 @@ pub struct Algebraic {
     pub number: Number,
 }
 
-fn as_text<S: serde::Serializer>(list: &[Rational], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_str(&print(list, Style::Text))
+impl Serialize for Cycle {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("polynomial", &self.print_polynomial(Style::Text))?;
+        map.serialize_entry("amplitude", &self.amplitude)?;
+        map.serialize_entry("squared_amplitude", &self.squared_amplitude)?;
+        map.serialize_entry("floquet_exponent", &self.exponent)?;
+        // Its older name.
+        map.serialize_entry("exponent", &self.exponent)?;
+        map.serialize_entry("frequency", &self.frequency)?;
+        map.serialize_entry("stable", &self.stable)?;
+        map.end()
+    }
 }
 
 /// The terms of a polynomial in r.

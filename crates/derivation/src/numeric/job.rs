@@ -4,6 +4,7 @@ use super::amplitude::scaled_to_amplitude;
 use super::binding::{ExactValues, Given, as_powers};
 use super::estimate::{Estimate, EstimatedSeries, Tier, rounding};
 use crate::error::DerivationError as Error;
+use crate::exponent::estimated_exponent;
 use crate::limits::refuse_above;
 use crate::settings::Settings;
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
@@ -211,6 +212,14 @@ impl Job<'_> {
         if let Some(quantity) = Quantity::start(self.condition) {
             series
                 .push((quantity, expansion.amplitude.iter().map(|c| reals.to_float(c)).collect()));
+        }
+        if self.condition == Condition::LimitCycle
+            && let Some(omega) = squared.square_root(reals).filter(|_| root == 1)
+            && let Some(exponent) =
+                estimated_exponent(algebra, &self.problem.equation, expansion.solution, &omega)
+        {
+            let list = exponent.iter().map(|c| reals.to_float(c)).collect();
+            series.push((Quantity::FloquetExponent, list));
         }
         let products = expansion.work.iter().map(|work| work.products).sum();
         Ok(Run { nodes, products, series })

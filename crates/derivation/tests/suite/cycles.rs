@@ -4,6 +4,9 @@
 
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::averaging::{AveragingSettings, Cycles, average, print_series};
+use lindstedt_derivation::numeric::{self, Tier};
+use lindstedt_derivation::{Settings, derive};
+use lindstedt_equation::{Condition, Quantity};
 use lindstedt_problem_file::ProblemFile;
 
 fn cycles(equation: &str, order: usize) -> Cycles {
@@ -28,6 +31,37 @@ fn exponent_of_van_der_pol() {
     );
     assert!(cycle.stable);
     assert_eq!(cycle.amplitude.decimal, "2.00000000000");
+}
+
+/// Lindstedt's expansion by Liouville's theorem against A'(a) of averaging: products of up to four factors, a unit of
+/// time, the velocity in the damping, and the same in values.
+#[test]
+fn exponents_of_expansions() {
+    let cases = [
+        ("x'' + x = eps*(1 - x^2)*x'", 9),
+        ("x'' + 4*x = eps*(1 - x'^2/3)*x'", 6),
+        ("x'' + x = eps*(1 - x^2)*x' + eps^2*x^3", 6),
+        ("x'' + x = eps*(5/4 - x^2 - x^4/8)*x' + eps^2*x*x'^2 + eps^3*x'^5", 5),
+    ];
+    for (equation, order) in cases {
+        let problem = ProblemFile::parse(&format!("equation = {equation:?}")).unwrap().problem;
+        let settings =
+            Settings { order, condition: Some(Condition::LimitCycle), ..Settings::default() };
+        let found = derive(&problem, &settings, &mut |_| true).unwrap();
+        let expected = cycles(equation, order);
+        let exponent = &expected.cycles[0].exponent;
+        let tier = Tier::Collocation { digits: 20 };
+        let values = numeric::derive(&problem, &settings, tier, &mut |_| true).unwrap();
+        let values = values.named(Quantity::FloquetExponent).unwrap();
+        for (n, c) in exponent.iter().enumerate() {
+            let own = found.exact(Quantity::FloquetExponent, n);
+            assert_eq!(own, c.number.exact, "{equation}, order {n}");
+            let value: f64 = c.number.decimal.parse().unwrap();
+            let (estimate, error) = &values.coefficients[n];
+            let bound = error.to_f64() + 1e-11 * value.abs();
+            assert!((estimate.to_f64() - value).abs() <= bound, "{equation} {n}");
+        }
+    }
 }
 
 /// (1 - x^4) x': R_1 = 1/2 - rho^2/16, a_0 = 8^(1/4), lambda_1 = 2 rho R_1' = -rho^2/4 = -2.

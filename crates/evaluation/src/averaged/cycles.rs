@@ -13,9 +13,9 @@ use lindstedt_algebra::Stop;
 use lindstedt_derivation::averaging::{Algebraic, Cycle, Cycles};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number};
-use lindstedt_series::resummation::{Sample, partial_sums, resum};
-use rug::Float;
+use lindstedt_series::resummation::{Method, Sample, partial_sums, resum};
 use rug::ops::Pow;
+use rug::{Float, Rational};
 use serde::Serialize;
 
 /// A limit cycle at one value of the small parameter; of every number nothing where not one digit is supported.
@@ -37,19 +37,29 @@ const DOUBLINGS: u32 = 4;
 
 /// eps^first (c_0 + c_1 eps^step + ...) along a cycle.
 struct Along<'a> {
-    cycle: &'a Cycle,
-    series: &'a [Algebraic],
+    /// c_n; nothing where it vanishes.
+    coefficients: Vec<Option<Coefficient<'a>>>,
     small: &'a Exact,
     first: usize,
     step: usize,
 }
 
+type Coefficient<'a> = Box<dyn Fn(Balls) -> Ball + 'a>;
+
 impl<'a> Along<'a> {
     fn new(cycle: &'a Cycle, series: &'a [Algebraic], small: &'a Exact) -> Option<Self> {
-        let mut present = (0..series.len()).filter(|n| !series[*n].element.is_empty());
+        let value = |c: &'a Algebraic| -> Option<Coefficient<'a>> {
+            let value = move |balls| cycle.enclosed(c, balls);
+            (!c.element.is_empty()).then(|| Box::new(value) as _)
+        };
+        Self::of(series.iter().map(value).collect(), small)
+    }
+
+    fn of(coefficients: Vec<Option<Coefficient<'a>>>, small: &'a Exact) -> Option<Self> {
+        let mut present = (0..coefficients.len()).filter(|n| coefficients[*n].is_some());
         let first = present.next()?;
         let step = present.map(|n| n - first).fold(0, gcd).max(1);
-        Some(Self { cycle, series, small, first, step })
+        Some(Self { coefficients, small, first, step })
     }
 
     fn power(&self, n: usize, bits: u32) -> Float {
@@ -57,23 +67,24 @@ impl<'a> Along<'a> {
         small.pow(u32::try_from(n).unwrap_or(u32::MAX))
     }
 
-    fn coefficient(&self, c: &Algebraic, bits: u32) -> Float {
-        let at = |k: u32| self.cycle.enclosed(c, Balls::new(bits.saturating_mul(1 << k)));
+    fn coefficient(&self, n: usize, bits: u32) -> Float {
+        let Some(coefficient) = &self.coefficients[n] else { return Float::new(bits) };
+        let at = |k: u32| coefficient(Balls::new(bits.saturating_mul(1 << k)));
         let known = |ball: &Ball| ball.relative_accuracy_bits() >= i64::from(bits);
         let found = (1..=DOUBLINGS).map(at).find(known);
         found.map_or_else(|| Float::new(bits), |ball| Float::with_val(bits, ball.midpoint()))
     }
 
     fn sample(&self, bits: u32) -> Sample {
-        let series = self.series[self.first..].iter().step_by(self.step);
-        let coefficients = series.map(|c| self.coefficient(c, bits)).collect();
+        let orders = (self.first..self.coefficients.len()).step_by(self.step);
+        let coefficients = orders.map(|n| self.coefficient(n, bits)).collect();
         Sample { coefficients, point: self.power(self.step, bits), map: None, radius: None, bits }
     }
 
     /// |t_n| by n, the order of eps behind the first.
     fn sizes(&self, bits: u32) -> Vec<f64> {
         let Sample { coefficients, point, .. } = self.sample(bits);
-        let mut sizes = vec![0.0; self.series.len() - self.first];
+        let mut sizes = vec![0.0; self.coefficients.len() - self.first];
         for (n, c) in coefficients.iter().enumerate() {
             sizes[n * self.step] = c.to_f64().abs() * power(point.to_f64().abs(), n);
         }
@@ -81,13 +92,13 @@ impl<'a> Along<'a> {
     }
 
     /// The sum, with an error that is infinite where the terms do not fall.
-    fn sum(&self, q: f64, bits: u32, stop: &Stop) -> Option<Ball> {
+    fn sum(&self, q: f64, bits: u32, method: Option<Method>, stop: &Stop) -> Option<Ball> {
         let sample = remembered(|bits| Some(self.sample(bits)));
-        let resummed = resum(&sample, None, bits, stop).ok().map(|r| r.outcome.estimate);
+        let resummed = resum(&sample, method, bits, stop).ok().map(|r| r.outcome.estimate);
         let (value, error) = match resummed.filter(|found| found.error.is_finite()) {
             Some(found) => (found.value, found.error),
             None => {
-                let (sizes, last) = (self.sizes(bits), self.series.len() - self.first - 1);
+                let (sizes, last) = (self.sizes(bits), self.coefficients.len() - self.first - 1);
                 let rests = last_two(&sizes).map(|(n, size)| size * power(q, last - n));
                 let none = sizes[0] * power(q, last + 1);
                 let rest = rests.reduce(f64::max).map_or(none, |t| t * SAFETY * q / (1.0 - q));
@@ -101,6 +112,41 @@ impl<'a> Along<'a> {
         let error = error * Float::with_val(53, factor.abs_ref());
         Some(Balls::new(bits).from_parts(&(value * factor), &error))
     }
+}
+
+/// By how much at most the terms of all fall per order; where all vanish, as if the coefficients to come were 1.
+fn ratio<'a>(along: impl Iterator<Item = &'a Along<'a>>, small: &Exact, bits: u32) -> f64 {
+    let ratios = along.flat_map(|along| {
+        let sizes = along.sizes(bits);
+        falls(&sizes, sizes[0]).concat()
+    });
+    ratios.reduce(f64::max).unwrap_or_else(|| small.to_f64().abs())
+}
+
+/// Whether an exponent is negative; nothing where its error leaves that open.
+fn is_stable(exponent: Option<&Ball>) -> Option<bool> {
+    let sign = exponent.filter(|ball| ball.is_finite() && !ball.contains_zero());
+    sign.map(|ball| ball.midpoint().is_sign_negative())
+}
+
+/// The sum of a Floquet exponent, and whether its cycle is stable.
+pub(crate) fn exponent(
+    series: &[Rational],
+    small: &Exact,
+    digits: usize,
+    stop: &Stop,
+) -> (Option<Number>, Option<bool>) {
+    let bits = bits_for(digits.saturating_add(16));
+    let value = |c: &'_ Rational| -> Option<Coefficient<'_>> {
+        let c = c.clone();
+        (!c.is_zero()).then(|| Box::new(move |balls: Balls| balls.from_rational(&c)) as _)
+    };
+    let along = Along::of(series.iter().map(value).collect(), small);
+    let sum = along.and_then(|along| {
+        let q = ratio(std::iter::once(&along), small, bits);
+        along.sum(q, bits, Some(Method::Pade), stop)
+    });
+    (sum.as_ref().and_then(|sum| Number::estimated(sum, digits)), is_stable(sum.as_ref()))
 }
 
 /// All cycles by increasing amplitude.
@@ -118,21 +164,15 @@ impl SummedCycle {
         let bits = bits_for(digits.saturating_add(16));
         let series = [&cycle.squared_amplitude, &cycle.frequency, &cycle.exponent];
         let along = series.map(|series| Along::new(cycle, series, small));
-        let ratios = along.iter().flatten().flat_map(|along| {
-            let sizes = along.sizes(bits);
-            falls(&sizes, sizes[0]).concat()
-        });
-        // Where all vanish, as if the coefficients to come were 1.
-        let q = ratios.reduce(f64::max).unwrap_or_else(|| small.to_f64().abs());
-        let sums = along.map(|along| along?.sum(q, bits, stop));
+        let q = ratio(along.iter().flatten(), small, bits);
+        let sums = along.map(|along| along?.sum(q, bits, None, stop));
         let [square, frequency, exponent] = &sums;
         let number = |ball: &Option<Ball>| Number::estimated(ball.as_ref()?, digits);
-        let sign = exponent.as_ref().filter(|ball| ball.is_finite() && !ball.contains_zero());
         Self {
             amplitude: number(&square.as_ref().and_then(|ball| Balls::new(bits).sqrt(ball))),
             frequency: number(frequency),
             floquet_exponent: number(exponent),
-            stable: sign.map(|ball| ball.midpoint().is_sign_negative()),
+            stable: is_stable(exponent.as_ref()),
         }
     }
 }

@@ -21,6 +21,7 @@ use crate::error::EvaluationError as Error;
 use crate::few::plain;
 use crate::setting::{check_names, small_value};
 pub use cycles::SummedCycle;
+pub(crate) use cycles::exponent;
 use flow::Flow;
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::averaging::numbers::{Numbers, numbers};

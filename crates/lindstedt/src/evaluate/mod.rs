@@ -104,6 +104,7 @@ impl Oscillator {
         let start = Instant::now();
         let (case, mut remarks) = self.settled()?;
         let mut value = case.period(question, work)?;
+        value.find_stability(work);
         let mut standing = Standing::Complete;
         let improved = case.improve(&mut value, question, work);
         if let Some(times) = &question.times {

@@ -82,6 +82,13 @@ fn periods(answer: &Answer<Evaluation>) -> Vec<Line> {
         let closed = Text::words(format!("{} = ", exact.decimal)).code(form);
         lines.push(("exact period".into(), closed));
     }
+    if let Some(found) = &value.stability {
+        let exponent = found.floquet_exponent.as_ref();
+        let exponent =
+            Text::words(with_error(exponent, "estimated", "no estimate", "not one digit"));
+        let stable = stability_word(found.stable, "undecided");
+        lines.push(("Floquet exponent".into(), exponent.and(format!(": {stable}"))));
+    }
     let error = value.true_error.as_deref();
     lines.extend(error.map(|error| (name("true error of ", "T", "T"), error.into())));
     lines
