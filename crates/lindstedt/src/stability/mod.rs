@@ -9,6 +9,7 @@ mod point;
 mod reading;
 mod subject;
 
+use crate::choices::{Choice, VARIANTS};
 use crate::grid::{Axis, Part};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Work};
@@ -107,11 +108,9 @@ impl Stability {
     /// The name of the variant.
     #[must_use]
     pub fn variant_name(&self) -> &'static str {
-        match self.variant {
-            _ if self.impact_aware => "impact-aware",
-            Variant::E => "E",
-            Variant::S => "S",
-            Variant::P => "P",
+        match self.impact_aware {
+            true => "impact-aware",
+            false => Choice::word(VARIANTS, (self.variant, false)),
         }
     }
 }
