@@ -7,6 +7,7 @@ use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
 use lindstedt::catalogue::Catalogue;
+use lindstedt::choices::{Choice, NORMALISATIONS};
 use lindstedt::{Condition, Error, Oscillator};
 use lindstedt_report::{Format, Present};
 use pyo3::prelude::*;
@@ -36,16 +37,11 @@ fn made(
     for (name, value) in values {
         case = case.set(name, value)?;
     }
-    let condition = match condition {
-        None => return Ok(case),
-        Some("initial") => Condition::InitialAmplitude,
-        Some("fundamental") => Condition::FundamentalAmplitude,
-        Some("free") => Condition::FreeAmplitude,
-        Some(other) => {
-            let message = format!("there is no normalisation {other:?}");
-            return Err(crate::failure::usage(message, "initial, fundamental or free"));
-        }
-    };
+    let Some(word) = condition else { return Ok(case) };
+    let condition = Choice::find(NORMALISATIONS, word).ok_or_else(|| {
+        let message = format!("there is no normalisation {word:?}");
+        crate::failure::usage(message, "initial, fundamental or free")
+    })?;
     case.under(condition)
 }
 

@@ -1,6 +1,7 @@
 //! The options of a question: text, each read once; what is left over is refused.
 
 use crate::failure::usage;
+use lindstedt::choices::Choice;
 use lindstedt::grid::Axis;
 use lindstedt::{Error, Exact};
 use std::cell::RefCell;
@@ -47,7 +48,11 @@ impl Options {
 
     /// Whether a flag is set.
     pub fn flag(&self, name: &str) -> Result<bool, Error> {
-        Ok(self.choice(name, &[("true", true), ("false", false)])?.unwrap_or(false))
+        let flag = self.read(name, |text| {
+            let wrong = |_| usage(format!("{name} = {text:?} is no flag"), "true or false");
+            text.parse().map_err(wrong)
+        });
+        Ok(flag?.unwrap_or(false))
     }
 
     /// Refuses more than one of these.
@@ -65,13 +70,12 @@ impl Options {
     }
 
     /// One of a list of words.
-    pub fn choice<T: Copy>(&self, name: &str, list: &[(&str, T)]) -> Result<Option<T>, Error> {
+    pub fn choice<T: Copy>(&self, name: &str, list: &[Choice<T>]) -> Result<Option<T>, Error> {
         self.read(name, |text| {
-            let found = list.iter().find(|(word, _)| *word == text);
-            let words: Vec<&str> = list.iter().map(|(word, _)| *word).collect();
+            let words: Vec<&str> = list.iter().map(|choice| choice.word).collect();
             let wrong =
                 || usage(format!("{name} is none of {words:?}: {text:?}"), &words.join(", "));
-            found.map(|(_, value)| *value).ok_or_else(wrong)
+            Choice::find(list, text).ok_or_else(wrong)
         })
     }
 

@@ -3,17 +3,20 @@
 use crate::failure::usage;
 use crate::found::Shown;
 use crate::options::Options;
+use lindstedt::choices::{
+    BRANCHES, FIGURES, KICKS, LANGUAGES, Numbers, PREDICTORS, RESUMMATIONS, ROUTES, SECTIONS,
+    TIERS, VARIANTS,
+};
+use lindstedt::evaluate::Times;
 use lindstedt::evaluate::averaged::{AveragedMotion, Start as AveragedStart};
-use lindstedt::evaluate::{Language, Times};
 use lindstedt::grid::Axis;
-use lindstedt::motion::{Bifurcation, Chaos, End, Section, Start, View};
-use lindstedt::numeric::Tier;
+use lindstedt::motion::{Bifurcation, Chaos, End, Start};
 use lindstedt::threshold::Persisting;
 use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Oscillator, Respond, Route, Simulate, Stability, Threshold,
+    Condition, Derive, Error, Evaluate, Oscillator, Respond, Simulate, Stability, Threshold,
     Verify, Work,
 };
 
@@ -78,42 +81,23 @@ fn derive(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         options.finish()?;
         return boxed(case.averaged(order, work));
     }
-    let tier = match options.text("tier").as_deref() {
-        None | Some("exact") => return exact(case, order, options, work),
-        Some("fourier") => Tier::Fourier { harmonics: options.parsed("harmonics")?.unwrap_or(64) },
-        Some("collocation") if work.doubles => Tier::Doubles,
-        Some("collocation") => Tier::Collocation { digits: work.digits },
-        Some(other) => {
-            let message = format!("there is no tier {other:?}");
-            return Err(usage(message, "exact, collocation or fourier"));
-        }
+    let numbers = options.choice("tier", TIERS)?.unwrap_or(Numbers::Exact);
+    let harmonics = match numbers {
+        Numbers::Fourier => options.parsed("harmonics")?.unwrap_or(64),
+        _ => 0,
     };
-    options.finish()?;
-    boxed(case.estimate(order, tier, work))
-}
-
-fn exact(case: &Oscillator, order: usize, options: &Options, work: &Work) -> Asked {
-    let routes = [
-        ("auto", Route::Automatic),
-        ("clock", Route::Clock),
-        ("driver", Route::Driver),
-        ("energy", Route::EnergyIntegral),
-        ("frequency", Route::Frequency),
-    ];
-    let route = options.choice("route", &routes)?.unwrap_or_default();
+    if let Some(tier) = numbers.tier(harmonics, work) {
+        options.finish()?;
+        return boxed(case.estimate(order, tier, work));
+    }
+    let route = options.choice("route", ROUTES)?.unwrap_or_default();
     options.finish()?;
     boxed(case.derive(Derive { order, route }, work))
 }
 
 /// The order and the method of `evaluate`.
 pub fn resummed(options: &Options) -> Result<Evaluate, Error> {
-    let method = match options.text("resum").as_deref() {
-        None | Some("auto") => None,
-        Some(name) => Some(name.parse().map_err(|_| {
-            let words = "none, pade, uniform, uniform-pade, conformal, borel-pade or auto";
-            usage(format!("there is no method {name:?}"), words)
-        })?),
-    };
+    let method = options.choice("resum", RESUMMATIONS)?.flatten();
     Ok(Evaluate { order: options.parsed("order")?, method, ..Evaluate::default() })
 }
 
@@ -163,13 +147,7 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         options.finish()?;
         return boxed(case.prove(&question, work));
     }
-    let languages = [
-        ("rust", Language::Rust),
-        ("python", Language::Python),
-        ("c", Language::C),
-        ("latex", Language::Latex),
-    ];
-    let Some(language) = options.choice("code", &languages)? else {
+    let Some(language) = options.choice("code", LANGUAGES)? else {
         options.finish()?;
         return boxed(case.evaluate(&question, work));
     };
@@ -225,7 +203,7 @@ fn trade(options: &Options) -> Result<Plan, Error> {
 }
 
 fn branch(options: &Options) -> Result<Option<Branch>, Error> {
-    options.choice("branch", &[("+", Branch::Plus), ("-", Branch::Minus)])
+    options.choice("branch", BRANCHES)
 }
 
 /// The start of a motion.
@@ -238,21 +216,12 @@ fn start(options: &Options) -> Result<Start, Error> {
     })
 }
 
-fn section(options: &Options) -> Result<Option<Section>, Error> {
-    let words = [
-        ("stroboscopic", Section::Stroboscopic),
-        ("impact", Section::Impact),
-        ("velocity", Section::Velocity),
-    ];
-    options.choice("section", &words)
-}
-
 /// A bifurcation diagram over the parameter of `sweep`.
 pub fn diagram(sweep: &str, options: &Options) -> Result<Bifurcation, Error> {
     let usual = Bifurcation::over(sweep);
     let question = Bifurcation {
         start: start(options)?,
-        section: section(options)?,
+        section: options.choice("section", SECTIONS)?,
         skipped: options.parsed("skip")?.unwrap_or(usual.skipped),
         kept: options.parsed("keep")?.unwrap_or(usual.kept),
         follow: options.flag("follow")?,
@@ -283,15 +252,14 @@ fn simulate(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     let until = options.exact("until")?.map(End::Time);
     let periods = options.parsed("periods")?.map(End::Periods);
     let impacts = options.parsed("impacts")?.map(End::Impacts);
-    let views = [("phase", View::Phase), ("time", View::Time), ("section", View::Section)];
     let question = Simulate {
         start: start(options)?,
         end: until.or(periods).or(impacts),
         times: options.read("times", Simulate::read_times)?,
-        section: section(options)?,
+        section: options.choice("section", SECTIONS)?,
         skip: options.parsed("skip")?,
         drawn: true,
-        view: options.choice("figure", &views)?,
+        view: options.choice("figure", &FIGURES[..3])?.flatten(),
     };
     options.finish()?;
     boxed(case.motion(&question, work))
@@ -317,27 +285,14 @@ pub fn threshold(case: &Oscillator, options: &Options) -> Result<Threshold, Erro
 
 /// The question for a stability.
 pub fn stability(case: &Oscillator, options: &Options) -> Result<Stability, Error> {
-    let variants = [
-        ("E", (Variant::E, false)),
-        ("S", (Variant::S, false)),
-        ("P", (Variant::P, false)),
-        ("impact-aware", (Variant::E, true)),
-    ];
-    let kicks = [
-        ("none", Kick::None),
-        ("mean", Kick::Mean),
-        ("before", Kick::Before),
-        ("after", Kick::After),
-    ];
-    let predictors = [("both", (true, true)), ("kbm", (true, false)), ("exact", (false, true))];
     let (variant, impact_aware) =
-        options.choice("variant", &variants)?.unwrap_or((Variant::E, false));
-    let (predict, exact) = options.choice("predictor", &predictors)?.unwrap_or((true, true));
+        options.choice("variant", VARIANTS)?.unwrap_or((Variant::E, false));
+    let (predict, exact) = options.choice("predictor", PREDICTORS)?.unwrap_or((true, true));
     let question = Stability {
         order: options.parsed("order")?.unwrap_or(1),
         variant,
         impact_aware,
-        kick: options.choice("kick", &kicks)?.unwrap_or(Kick::Mean),
+        kick: options.choice("kick", KICKS)?.unwrap_or(Kick::Mean),
         predict,
         exact,
         branch: branch(options)?,

@@ -46,16 +46,11 @@ impl Means {
 /// What was last told: words, parts done, all parts.
 type Told = (String, usize, usize);
 
-fn told(progress: &Progress) -> Option<Told> {
-    Some(match progress {
-        Progress::Order(order, _) => (format!("order {order}"), 0, 0),
-        Progress::Primes(primes) => (format!("{primes} primes"), 0, 0),
-        Progress::Integrating(done) => (format!("{done} values compared"), 0, 0),
-        Progress::Checking => ("substituting".to_owned(), 0, 0),
+fn told(progress: &Progress) -> Told {
+    match progress {
         Progress::Parts(done, all) => (String::new(), *done, *all),
-        Progress::Digits(digits) => (format!("{digits} digits"), 0, 0),
-        _ => return None,
-    })
+        other => (other.words(), 0, 0),
+    }
 }
 
 impl Means {
@@ -74,8 +69,8 @@ impl Means {
         let stop =
             move || asked.load(Ordering::Relaxed) || end.is_some_and(|end| Instant::now() > end);
         let tell = move |progress: Progress| {
-            if let (Some(words), Ok(mut last)) = (told(&progress), tell.lock()) {
-                *last = Some(words);
+            if let Ok(mut last) = tell.lock() {
+                *last = Some(told(&progress));
             }
         };
         let work = Work {

@@ -83,7 +83,7 @@ mod unit {
         assert_eq!(executables(messages), [("y/z".into(), "x".into())]);
     }
 
-    /// A program that counts to a million costs something, and its end is told.
+    /// A program that counts costs something, and its end is told.
     #[test]
     #[cfg(target_os = "linux")]
     fn programs_are_measured() -> std::io::Result<()> {

@@ -92,27 +92,6 @@ fn directly(
 }
 
 #[test]
-fn the_multi_modular_route_agrees_with_rational_arithmetic() {
-    for (name, condition) in [
-        ("duffing", Condition::InitialAmplitude),
-        ("duffing", Condition::FundamentalAmplitude),
-        ("van-der-pol", Condition::LimitCycle),
-    ] {
-        for order in [0, 1, 2, 7, 24] {
-            let settings = Settings { order, condition: Some(condition), ..Settings::default() };
-            let modular = with(name, settings);
-            let Solution::Rational(proved) = &modular.solution else { panic!("over Q") };
-            let equation = problems::find(name).unwrap().equation;
-            let direct = directly(&equation, condition, order).unwrap();
-            let proved = proved.expansion();
-            assert_eq!(proved.solution, direct.solution);
-            assert_eq!(proved.frequency_squared, direct.frequency_squared);
-            assert_eq!(proved.amplitude, direct.amplitude);
-        }
-    }
-}
-
-#[test]
 fn the_residual_check_finds_a_wrong_digit() {
     let algebra = Trigonometric::new(Rationals);
     let equation = problems::find("van-der-pol").unwrap().equation;

@@ -24,6 +24,7 @@ mod one_phase;
 mod paper;
 mod paper_section_2;
 mod problem_files;
+mod report;
 mod respond;
 mod slow_flows;
 mod small_delta;

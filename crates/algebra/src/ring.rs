@@ -141,3 +141,18 @@ impl RationalAlgebra for Rationals {
         Some(a.clone())
     }
 }
+
+/// base^exponent by repeated squaring.
+pub fn power<R: Ring>(ring: &R, base: &R::Element, mut exponent: u32) -> R::Element {
+    let (mut result, mut square) = (ring.one(), base.clone());
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            result = ring.mul(&result, &square);
+        }
+        exponent >>= 1;
+        if exponent > 0 {
+            square = ring.mul(&square, &square);
+        }
+    }
+    result
+}

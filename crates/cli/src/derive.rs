@@ -1,12 +1,57 @@
 //! `lindstedt derive`: the expansion, order by order, as one would write it on the board.
 
 use crate::Outcome;
-use crate::arguments::{self, DeriveOptions, Only, TierName};
+use crate::arguments::{Precision, one_of};
 use crate::failure::Failure;
 use crate::session::Session;
-use lindstedt::numeric::Tier;
-use lindstedt::unstable::equation::Condition;
-use lindstedt::{Derive, Route};
+use clap::{Args, ValueEnum};
+use lindstedt::choices::{NORMALISATIONS, Numbers, ROUTES, TIERS};
+use lindstedt::{Condition, Derive, Route};
+
+#[derive(Debug, Args)]
+pub struct DeriveOptions {
+    /// power-law, pendulum, vibro-impact, duffing, van-der-pol; a problem file (.toml); or an equation in quotes.
+    pub problem: String,
+    /// The highest order.
+    #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    pub order: u32,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
+    #[arg(long, value_parser = one_of(NORMALISATIONS))]
+    pub normalisation: Option<Condition>,
+    /// A parameter that is sought as a series: for which a forced motion stays periodic (edges of tongues), or at a Hopf point,
+    /// in the size of the cycle born there.
+    #[arg(long, value_name = "NAME")]
+    pub unknown: Option<String>,
+    /// A nonlinear normal mode by its number (1, 2, ...): backbone and shape.
+    #[arg(long, value_name = "K", conflicts_with = "unknown")]
+    pub mode: Option<u32>,
+    /// By the clock where the equation allows it and else by the driver; one of them; or the energy
+    /// integral (frequency alone: conservative forces that are polynomial, the power law, the pendulum).
+    #[arg(long, value_parser = one_of(&ROUTES[..4]), default_value = "auto")]
+    pub route: Route,
+    /// The frequency and the period alone, to higher order: by the energy integral where it applies, and else modulo
+    /// primes (limit cycles, forces with velocities).
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub only: Option<Only>,
+    /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated
+    /// Fourier series in doubles (--harmonics).
+    #[arg(long, value_parser = one_of(TIERS), default_value = "exact")]
+    pub tier: Numbers,
+    /// Harmonics of each symmetry class in the Fourier tier.
+    #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16384))]
+    pub harmonics: u32,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Only {
+    /// The series of omega^2, omega and T.
+    Frequency,
+}
 
 pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let oscillator = session.oscillator(&options.problem, &options.set, options.normalisation)?;
@@ -15,7 +60,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let order = options.order as usize;
     let unknown = options.unknown.as_deref().or(oscillator.unknown());
     let averaged = oscillator.condition() == Some(Condition::FreeAmplitude);
-    if options.only.is_some() && (options.tier != TierName::Exact || options.mode.is_some()) {
+    if options.only.is_some() && (options.tier != Numbers::Exact || options.mode.is_some()) {
         let message = "--only frequency belongs to exact expansions of one unknown".to_owned();
         return Err(Failure::usage("route-and-tier", message, "drop --only, or --tier and --mode"));
     }
@@ -31,16 +76,11 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     if averaged {
         return session.show(oscillator.averaged(order, &work), &[]);
     }
-    let tier = match options.tier {
-        TierName::Exact => {
-            let route = route(options)?;
-            return session.show(oscillator.derive(Derive { order, route }, &work), &[]);
-        }
-        TierName::Fourier => Tier::Fourier { harmonics: options.harmonics as usize },
-        TierName::Collocation if work.doubles => Tier::Doubles,
-        TierName::Collocation => Tier::Collocation { digits: work.digits },
+    let Some(tier) = options.tier.tier(options.harmonics as usize, &work) else {
+        let route = route(options)?;
+        return session.show(oscillator.derive(Derive { order, route }, &work), &[]);
     };
-    if options.route == arguments::Route::Energy {
+    if options.route == Route::EnergyIntegral {
         let message = "the energy integral is exact: --route energy has no other tier".to_owned();
         return Err(Failure::usage("route-and-tier", message, "drop --route or --tier"));
     }
@@ -50,11 +90,9 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
 /// The route; `--only frequency` goes by the energy integral where that applies, and else by primes.
 fn route(options: &DeriveOptions) -> Result<Route, Failure> {
     Ok(match (options.only, options.route) {
-        (Some(Only::Frequency), arguments::Route::Auto) => Route::Frequency,
-        (None, arguments::Route::Auto) => Route::Automatic,
-        (_, arguments::Route::Energy) => Route::EnergyIntegral,
-        (None, arguments::Route::Clock) => Route::Clock,
-        (None, arguments::Route::Driver) => Route::Driver,
+        (Some(Only::Frequency), Route::Automatic) => Route::Frequency,
+        (_, Route::EnergyIntegral) => Route::EnergyIntegral,
+        (None, route) => route,
         (Some(Only::Frequency), _) => {
             let message = "--only frequency has its own routes".to_owned();
             return Err(Failure::usage("route-and-tier", message, "drop --route or --only"));
@@ -64,8 +102,8 @@ fn route(options: &DeriveOptions) -> Result<Route, Failure> {
 
 /// Refuses tiers and routes where there is one way alone.
 fn check_plain(options: &DeriveOptions) -> Result<(), Failure> {
-    let plain = options.tier == TierName::Exact && options.only.is_none();
-    if plain && options.route == arguments::Route::Auto {
+    let plain = options.tier == Numbers::Exact && options.only.is_none();
+    if plain && options.route == Route::Automatic {
         return Ok(());
     }
     let message =

@@ -3,6 +3,7 @@
 #![warn(clippy::too_many_lines)]
 
 mod arguments;
+mod command;
 mod derive;
 mod evaluate;
 mod failure;
@@ -20,8 +21,8 @@ mod trade;
 mod verify;
 mod watch;
 
-use arguments::{Arguments, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
+use command::{Arguments, Command};
 use failure::Failure;
 use session::Session;
 use std::process::ExitCode;
@@ -43,8 +44,10 @@ fn main() -> ExitCode {
         Command::Stability(options) => stability::run(options, &session),
         Command::Trade(options) => trade::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
-        Command::Completions(options) => manual::completions(options, &session),
-        Command::Man(options) => manual::page(options, &session),
+        Command::Completions(options) => {
+            manual::completions(options, Arguments::command(), &session)
+        }
+        Command::Man(options) => manual::page(options, Arguments::command(), &session),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),

@@ -1,20 +1,34 @@
 //! `lindstedt completions` and `lindstedt man`: what the arguments say of themselves, in the forms of shells and
 //! of `man`.
 
-use crate::arguments::{Arguments, CompletionsOptions, ManOptions};
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::{Outcome, output};
-use clap::CommandFactory;
+use clap::{Args, Command};
 
-pub fn completions(options: &CompletionsOptions, session: &Session<'_>) -> Outcome {
+#[derive(Debug, Args)]
+pub struct CompletionsOptions {
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManOptions {
+    /// A command; without it the program.
+    #[arg(value_name = "COMMAND")]
+    pub of: Option<String>,
+}
+
+pub fn completions(
+    options: &CompletionsOptions,
+    mut command: Command,
+    session: &Session<'_>,
+) -> Outcome {
     let mut script = Vec::new();
-    clap_complete::generate(options.shell, &mut Arguments::command(), "lindstedt", &mut script);
+    clap_complete::generate(options.shell, &mut command, "lindstedt", &mut script);
     written(&script, session)
 }
 
-pub fn page(options: &ManOptions, session: &Session<'_>) -> Outcome {
-    let mut command = Arguments::command();
+pub fn page(options: &ManOptions, mut command: Command, session: &Session<'_>) -> Outcome {
     // The options of every command go to each of them.
     command.build();
     if let Some(name) = &options.of {

@@ -1,6 +1,6 @@
 //! What all commands share: format, output, progress, what ends them.
 
-use crate::arguments::{Common, Format, Normalisation, Precision};
+use crate::arguments::{Common, Format, Precision};
 use crate::failure::{FILE, Failure, NO_ANSWER, STOPPED, UNDECIDED};
 use crate::terminal::warn;
 use crate::watch::{Limits, Watch};
@@ -8,10 +8,9 @@ use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::unstable::equation::Condition;
 use lindstedt::unstable::problem_file::{FileError, LARGEST_FILE, canonical_name};
-use lindstedt::{Answer, Error, Exact, Oscillator, Progress, Remark, Standing, Work};
+use lindstedt::{Answer, Error, Oscillator, Progress, Remark, Standing, Work};
 use lindstedt_report::{FigureError, Format as Written, Present};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -68,9 +67,7 @@ impl<'a> Session<'a> {
     pub fn work(&self) -> Work {
         let bar = self.bar.clone();
         let progress = move |progress: Progress| {
-            if let Some(message) = words(&progress) {
-                bar.set_message(message);
-            }
+            bar.set_message(progress.words());
             bar.tick();
         };
         Work {
@@ -93,24 +90,18 @@ impl<'a> Session<'a> {
         &self,
         name: &str,
         set: &[String],
-        normalisation: Option<Normalisation>,
+        condition: Option<Condition>,
     ) -> Result<Oscillator, Failure> {
-        let oscillator = if is_equation(name) {
+        let mut oscillator = if is_equation(name) {
             Oscillator::parse(name)?
         } else if is_file(name) {
             Oscillator::file(&read(name)?).map_err(|error| at_place(name, error))?.called(name)
         } else {
             Oscillator::builtin(name)?
         };
-        let mut oscillator = oscillator;
-        for (name, value) in parameters(set)? {
-            oscillator = oscillator.with(&name, value);
+        for item in set {
+            oscillator = with_value(oscillator, item)?;
         }
-        let condition = normalisation.map(|normalisation| match normalisation {
-            Normalisation::Initial => Condition::InitialAmplitude,
-            Normalisation::Fundamental => Condition::FundamentalAmplitude,
-            Normalisation::Free => Condition::FreeAmplitude,
-        });
         Ok(match condition {
             Some(condition) => oscillator.under(condition)?,
             None => oscillator,
@@ -288,19 +279,6 @@ impl<'a> Session<'a> {
     }
 }
 
-/// What is being done, in words.
-fn words(progress: &Progress) -> Option<String> {
-    Some(match progress {
-        Progress::Order(order, terms) => format!("order {order} done, {terms} terms"),
-        Progress::Primes(primes) => format!("{primes} primes done"),
-        Progress::Integrating(done) => format!("{done} values compared"),
-        Progress::Checking => "substituting into the equation".to_owned(),
-        Progress::Parts(done, all) => format!("{done} of {all} done"),
-        Progress::Digits(digits) => format!("{digits} digits"),
-        _ => return None,
-    })
-}
-
 /// Says that a file is not written; the exit code.
 fn nothing(path: &Path) -> u8 {
     warn(&format!("there is nothing to draw: {} is not written", path.display()));
@@ -351,32 +329,23 @@ fn digits(precision: &Precision) -> Result<usize, Failure> {
     }
 }
 
-/// Reads the `--set NAME=VALUE` arguments.
-fn parameters(list: &[String]) -> Result<BTreeMap<String, Exact>, Failure> {
-    let mut parameters = BTreeMap::new();
-    for item in list {
-        let Some((name, value)) = item.split_once('=') else {
-            let message = format!("{item:?} is not NAME=VALUE");
-            return Err(Failure::usage("set", message, "for example --set amplitude=1/2"));
-        };
-        if name.trim() == "branch" && matches!(value.trim(), "+" | "-") {
-            let message = "branch has no meaning here: it chooses the root of the impact velocity, and \
-                           the free flight is the same on both";
-            let hint = "lindstedt stability and lindstedt simulate take it";
-            return Err(Failure::usage("set", message.to_owned(), hint));
-        }
-        if canonical_name(name.trim()) == "pi" {
-            let message = "pi is a number: it has no other value".to_owned();
-            return Err(Failure::usage("set", message, ""));
-        }
-        let value = Exact::parse(value)?;
-        // Greek letters as in a problem file.
-        if parameters.insert(canonical_name(name.trim()), value).is_some() {
-            let message = format!("{name} is set twice");
-            return Err(Failure::usage("set", message, ""));
-        }
+/// The oscillator with the value of a `--set NAME=VALUE`.
+fn with_value(oscillator: Oscillator, item: &str) -> Result<Oscillator, Failure> {
+    let Some((name, value)) = item.split_once('=') else {
+        let message = format!("{item:?} is not NAME=VALUE");
+        return Err(Failure::usage("set", message, "for example --set amplitude=1/2"));
+    };
+    if name.trim() == "branch" && matches!(value.trim(), "+" | "-") {
+        let message = "branch has no meaning here: it chooses the root of the impact velocity, and \
+                       the free flight is the same on both";
+        let hint = "lindstedt stability and lindstedt simulate take it";
+        return Err(Failure::usage("set", message.to_owned(), hint));
     }
-    Ok(parameters)
+    // Greek letters as in a problem file.
+    if oscillator.given().contains_key(&canonical_name(name.trim())) {
+        return Err(Failure::usage("set", format!("{name} is set twice"), ""));
+    }
+    Ok(oscillator.set(name, value)?)
 }
 
 /// An error of a problem file with its path, line and column.

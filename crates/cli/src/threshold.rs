@@ -1,12 +1,48 @@
 //! `lindstedt threshold`: the Melnikov threshold of homoclinic chaos, its zeros, curves, surfaces.
 
 use crate::Outcome;
-use crate::arguments::ThresholdOptions;
+use crate::arguments::Precision;
 use crate::failure::Failure;
 use crate::session::Session;
+use clap::Args;
 use lindstedt::Threshold;
 use lindstedt::grid::Axis;
 use lindstedt::threshold::{Persistence, Persisting};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct ThresholdOptions {
+    /// stick-slip; a problem file (.toml); or an equation in quotes.
+    pub problem: String,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along the horizontal axis.
+    #[arg(long, value_name = "NAME=LO..HI:COUNT")]
+    pub sweep: Vec<String>,
+    /// All zeros of the signed threshold in this range of a parameter.
+    #[arg(long, value_name = "NAME=LO..HI")]
+    pub zeros: Option<String>,
+    /// Thresholds of the resonances of period 2 pi m/omega, m = 1 ... M, in one well and around both.
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub subharmonics: Option<u32>,
+    /// The threshold to second order in the small parameter on every orbit, by Melnikov's integral of second order; of
+    /// loops also from the tangencies of their manifolds (some seconds).
+    #[arg(long)]
+    pub second_order: bool,
+    /// The parameter for which an autonomous problem keeps its orbit between saddles, as a series in the small parameter
+    /// (also `unknown` in the file); without --order, where no series is known, to first order.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["sweep", "zeros", "subharmonics", "second_order", "plot"])]
+    pub unknown: Option<String>,
+    /// The highest order of that series.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub order: Option<u32>,
+    /// A figure (.svg) or a table (.csv) of the sweep; may be given twice.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+    #[command(flatten)]
+    pub precision: Precision,
+}
 
 pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;

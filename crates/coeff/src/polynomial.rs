@@ -4,6 +4,7 @@
 pub use crate::power_product::{PowerProduct, Symbol};
 use crate::product;
 use crate::sparse::{Accumulator, Monomial, Sparse};
+pub use lindstedt_algebra::power;
 use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -58,21 +59,6 @@ impl PolynomialRing {
         }
         Some(sum)
     }
-}
-
-/// base^exponent by repeated squaring.
-pub fn power<R: Ring>(ring: &R, base: &R::Element, mut exponent: u32) -> R::Element {
-    let (mut result, mut square) = (ring.one(), base.clone());
-    while exponent > 0 {
-        if exponent & 1 == 1 {
-            result = ring.mul(&result, &square);
-        }
-        exponent >>= 1;
-        if exponent > 0 {
-            square = ring.mul(&square, &square);
-        }
-    }
-    result
 }
 
 impl Ring for PolynomialRing {

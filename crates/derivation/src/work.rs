@@ -35,6 +35,21 @@ pub enum Progress {
     Digits(u32),
 }
 
+impl Progress {
+    /// What is being done.
+    #[must_use]
+    pub fn words(&self) -> String {
+        match self {
+            Self::Order(order, terms) => format!("order {order} done, {terms} terms"),
+            Self::Primes(primes) => format!("{primes} primes done"),
+            Self::Integrating(done) => format!("{done} values compared"),
+            Self::Checking => "substituting into the equation".to_owned(),
+            Self::Parts(done, all) => format!("{done} of {all} done"),
+            Self::Digits(digits) => format!("{digits} digits"),
+        }
+    }
+}
+
 /// The means of a question: one value for every verb. The default answers with 30 digits, in 8 GiB,
 /// without an end and in silence.
 ///

@@ -1,5 +1,6 @@
 //! Cost of charts: 1000 x 1000 predictions, 201 x 201 exact verdicts.
 
+use lindstedt_algebra::Stop;
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::chart::{Axis, Chart, Plan, Predictor, Swept, chart};
 use lindstedt_impact::flow::{Rates, rates};
@@ -83,5 +84,5 @@ fn order_fifty_at_fifty_digits() -> Rates<Certified> {
 #[divan::bench(args = [30, 100], sample_count = 5, sample_size = 1)]
 fn certified_point(digits: u32) -> StabilityReport<Certified> {
     #[allow(clippy::unwrap_used)]
-    certified_stability(&exact_point(), &Request::default(), digits).unwrap()
+    certified_stability(&exact_point(), &Request::default(), digits, &Stop::default()).unwrap()
 }

@@ -155,18 +155,8 @@ impl<S: Real> Truncated<'_, S> {
 /// collision of two real multipliers is passed through complex gains.
 ///
 /// # Errors
-/// [`ImpactError::OrderZero`]; [`ImpactError::NoConvergence`] where a multiplier is lost.
+/// [`ImpactError::OrderZero`]; [`ImpactError::NoConvergence`] where a multiplier is lost; [`ImpactError::Cancelled`].
 pub fn impact_aware<S: Real>(
-    parameters: &Parameters<S>,
-    orbit: &Orbit<S>,
-    kick: Kick,
-    order: usize,
-) -> Result<AwarePrediction<S>, ImpactError> {
-    watched_prediction(parameters, orbit, kick, order, &Stop::default())
-}
-
-/// [`impact_aware`], that can be stopped.
-pub(crate) fn watched_prediction<S: Real>(
     parameters: &Parameters<S>,
     orbit: &Orbit<S>,
     kick: Kick,

@@ -11,6 +11,7 @@ use crate::parameters::Parameters;
 pub use crate::parameters::Swept;
 use crate::prediction::{Ground, Variant};
 use crate::zeros::{exact_verdict, leading_modulus};
+use lindstedt_algebra::Stop;
 use lindstedt_number::complex::Complex;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -222,7 +223,7 @@ impl Fixed {
             );
         let orbit = needs_orbit.then(|| orbit(parameters));
         let through = |orbit: &Orbit<f64>| {
-            let found = clearance(parameters, orbit);
+            let found = clearance(parameters, orbit, &Stop::default());
             matches!(found, Ok(Some(found)) if found.margin > 0.0)
         };
         let found = orbit.as_ref().and_then(|found| found.as_ref().ok());
@@ -264,7 +265,7 @@ fn evaluate(
             Some((map.verdict(), plan.radius.then(|| map.spectral_radius())))
         }),
         (Some((Predictor::ImpactAware(kick), order)), Some(orbit)) => {
-            let found = impact_aware(parameters, orbit, kick, order).ok();
+            let found = impact_aware(parameters, orbit, kick, order, &Stop::default()).ok();
             found.map(|found| (found.verdict(), plan.radius.then(|| found.spectral_radius())))
         }
         _ => None,

@@ -1,9 +1,7 @@
 //! Does the flight between two impacts stay on its side of the wall?
 
 use crate::characteristic::check;
-use crate::equivalent::{Drive, EquivalentOrbit};
 use crate::error::ImpactError;
-use crate::flow::Flow;
 use crate::orbit::Orbit;
 use crate::parameters::Parameters;
 use lindstedt_algebra::Stop;
@@ -21,17 +19,11 @@ pub struct Clearance<S> {
     pub time: S,
 }
 
-/// A flight on \[0, T\] with bounds of its derivatives.
-trait Flight<S> {
+/// A flight on \[0, T\].
+struct Flight<'a, S>(&'a Parameters<S>, &'a Orbit<S>);
+
+impl<S: Real> Flight<'_, S> {
     /// (x - s, x', x'').
-    fn state(&self, t: &S) -> (S, S, S);
-    /// Bounds of |x''| and |x'''| on the whole flight.
-    fn bounds(&self) -> (f64, f64);
-}
-
-struct TrueFlight<'a, S>(&'a Parameters<S>, &'a Orbit<S>);
-
-impl<S: Real> Flight<S> for TrueFlight<'_, S> {
     fn state(&self, t: &S) -> (S, S, S) {
         let Self(parameters, orbit) = self;
         let (x, v) = orbit.state(parameters, t);
@@ -41,6 +33,7 @@ impl<S: Real> Flight<S> for TrueFlight<'_, S> {
         let acceleration = force.clone() * drive - c.clone() * &v - alpha.square() * &x;
         (x - wall, v, acceleration)
     }
+    /// Bounds of |x''| and |x'''| on the whole flight.
     fn bounds(&self) -> (f64, f64) {
         // H = sqrt(x'^2 + alpha^2 x^2) grows at most by P0 per unit of time (c >= 0).
         let Self(parameters, orbit) = self;
@@ -56,27 +49,6 @@ impl<S: Real> Flight<S> for TrueFlight<'_, S> {
     }
 }
 
-struct EquivalentFlight<'a, S>(&'a Flow<S>, &'a Drive<S>, &'a EquivalentOrbit<S>);
-
-impl<S: Real> Flight<S> for EquivalentFlight<'_, S> {
-    fn state(&self, t: &S) -> (S, S, S) {
-        let Self(flow, drive, orbit) = self;
-        let (x, v, a) = orbit.state(flow, &drive.omega, t);
-        (x - &drive.wall, v, a)
-    }
-    fn bounds(&self) -> (f64, f64) {
-        let Self(flow, drive, orbit) = self;
-        let omega = drive.omega.magnitude_above();
-        let forced = orbit.forced_amplitude.magnitude_above();
-        let rate = flow.growth_rate.magnitude_above().hypot(flow.frequency.magnitude_above());
-        let free = orbit.cosine.magnitude_above().hypot(orbit.sine.magnitude_above())
-            * orbit.growth.magnitude_above().max(1.0);
-        let second = forced * omega.powi(2) + free * rate.powi(2);
-        let third = forced * omega.powi(3) + free * rate.powi(3);
-        (second * (1.0 + 1e-12), third * (1.0 + 1e-12))
-    }
-}
-
 /// The clearance of the true orbit; `None` if x has no local maximum inside the flight (then it
 /// stays below the wall).
 ///
@@ -85,33 +57,13 @@ impl<S: Real> Flight<S> for EquivalentFlight<'_, S> {
 /// Doubles follow the same subdivision without the rounding errors.
 ///
 /// # Errors
-/// [`ImpactError::Undecided`] where x' and x'' vanish together within the precision.
+/// [`ImpactError::Undecided`] where x' and x'' vanish together within the precision; [`ImpactError::Cancelled`].
 pub fn clearance<S: Real>(
-    parameters: &Parameters<S>,
-    orbit: &Orbit<S>,
-) -> Result<Option<Clearance<S>>, ImpactError> {
-    clearance_watched(parameters, orbit, &Stop::default())
-}
-
-/// [`clearance`] that can be stopped.
-pub(crate) fn clearance_watched<S: Real>(
     parameters: &Parameters<S>,
     orbit: &Orbit<S>,
     stop: &Stop,
 ) -> Result<Option<Clearance<S>>, ImpactError> {
-    largest_maximum(&TrueFlight(parameters, orbit), &orbit.period, stop)
-}
-
-/// The clearance of an orbit of an equivalent flow; as [`clearance`].
-///
-/// # Errors
-/// As [`clearance`].
-pub fn equivalent_clearance<S: Real>(
-    flow: &Flow<S>,
-    drive: &Drive<S>,
-    orbit: &EquivalentOrbit<S>,
-) -> Result<Option<Clearance<S>>, ImpactError> {
-    largest_maximum(&EquivalentFlight(flow, drive, orbit), &orbit.period, &Stop::default())
+    largest_maximum(&Flight(parameters, orbit), &orbit.period, stop)
 }
 
 /// One interval of the bisection in units of T.
@@ -122,7 +74,7 @@ struct Interval {
 }
 
 fn largest_maximum<S: Real>(
-    flight: &impl Flight<S>,
+    flight: &Flight<'_, S>,
     period: &S,
     stop: &Stop,
 ) -> Result<Option<Clearance<S>>, ImpactError> {
@@ -176,7 +128,7 @@ fn largest_maximum<S: Real>(
 
 /// The maximum in an interval where x is proved concave and x' changes sign: Newton's method on
 /// x', then |t - t*| <= |x'|/min|x''|, and x(t*) - x(t) <= |x'| |t - t*|.
-fn maximum<S: Real>(flight: &impl Flight<S>, low: &S, high: &S, start: &S) -> Option<Clearance<S>> {
+fn maximum<S: Real>(flight: &Flight<'_, S>, low: &S, high: &S, start: &S) -> Option<Clearance<S>> {
     let (_, third) = flight.bounds();
     let width = (high.clone() - low).magnitude_above();
     let (mut t, mut last) = (start.clone(), f64::INFINITY);

@@ -260,13 +260,14 @@ impl<const W: usize> pulp::NullaryFnOnce for Flight<'_, W> {
 ///   differentiation matrix, independently in N flights: u n^2/sqrt N, and u n that all flights share.
 ///
 /// # Errors
-/// As [`ReturnMap::new`]; [`ImpactError::NoConvergence`] where a state leaves the doubles.
+/// As [`ReturnMap::new`]; [`ImpactError::NoConvergence`] where a state leaves the doubles; [`ImpactError::Cancelled`].
 pub fn piecewise_growth(
     parameters: &Parameters<f64>,
     orbit: &Orbit<f64>,
     flights: usize,
+    stop: &Stop,
 ) -> Result<Growth, ImpactError> {
-    watched_growth(parameters, orbit, flights, &Stop::default())
+    run(parameters, orbit, flights, stop)?.refined(parameters, orbit, flights, stop)
 }
 
 /// Whether the rate of [`piecewise_growth`] is below 1; nothing where it is within its error of 1. Finer flights are
@@ -288,16 +289,6 @@ pub fn piecewise_stable(
     }
     let found = run.refined(parameters, orbit, flights, &stop)?;
     Ok(below(&found).filter(|_| far(&found, 0.0)))
-}
-
-/// [`piecewise_growth`], that can be stopped.
-pub(crate) fn watched_growth(
-    parameters: &Parameters<f64>,
-    orbit: &Orbit<f64>,
-    flights: usize,
-    stop: &Stop,
-) -> Result<Growth, ImpactError> {
-    run(parameters, orbit, flights, stop)?.refined(parameters, orbit, flights, stop)
 }
 
 /// The largest rate of four starts.

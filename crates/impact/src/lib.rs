@@ -37,7 +37,7 @@
 //!     wall: number(0, 1), damping: number(1, 20), force: number(1, 1),
 //!     displacement_gain: number(2, 25), velocity_gain: number(0, 1), branch: Branch::Plus,
 //! };
-//! let report = certified_stability(&parameters, &Request::default(), 30).unwrap();
+//! let report = certified_stability(&parameters, &Request::default(), 30, &Stop::default()).unwrap();
 //! let velocity = report.orbit.unwrap().orbit.velocity;
 //! assert!((velocity.ball().midpoint().to_f64() - 0.503_527_207_501_491_3).abs() < 1e-15);
 //! assert!(velocity.ball().relative_accuracy_bits() > 100);

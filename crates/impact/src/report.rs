@@ -1,13 +1,13 @@
 //! One parameter point: the true orbit, the prediction and the truth side by side.
 
-use crate::aware::{AwarePrediction, watched_prediction};
+use crate::aware::{AwarePrediction, impact_aware};
 use crate::characteristic::{Characteristic, Kick, check};
 use crate::convergence::{Convergence, convergence};
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
-use crate::flight::{Clearance, clearance_watched};
+use crate::flight::{Clearance, clearance};
 use crate::flow::{Flow, rates};
-use crate::kick::{Growth, watched_growth};
+use crate::kick::{Growth, piecewise_growth};
 use crate::map::Verdict;
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::{ExactParameters, Parameters};
@@ -123,13 +123,14 @@ pub struct StabilityReport<S> {
 /// ```
 /// use lindstedt_impact::map::Verdict;
 /// use lindstedt_impact::parameters::{Branch, Parameters};
+/// use lindstedt_algebra::Stop;
 /// use lindstedt_impact::report::{Request, stability};
 ///
 /// let parameters = Parameters {
 ///     alpha: 1.0, omega: 3.3, periods: 2, restitution: 0.8, wall: 0.0, damping: 0.05,
 ///     force: 1.0, displacement_gain: 0.2, velocity_gain: 0.0, branch: Branch::Plus,
 /// };
-/// let report = stability(&parameters, &Request::default()).unwrap();
+/// let report = stability(&parameters, &Request::default(), &Stop::default()).unwrap();
 /// assert_eq!(report.kbm.unwrap().verdict, Verdict::Stable); // the prediction
 /// let exact = report.exact.unwrap();
 /// assert_eq!(exact.verdict, Verdict::Unstable); // the truth
@@ -137,19 +138,8 @@ pub struct StabilityReport<S> {
 /// ```
 ///
 /// # Errors
-/// Invalid parameters or order 0 only; a missing orbit or prediction stands in the report.
+/// Invalid parameters, order 0 and [`ImpactError::Cancelled`] only; a missing orbit or prediction stands in the report.
 pub fn stability<S: Real>(
-    parameters: &Parameters<S>,
-    request: &Request,
-) -> Result<StabilityReport<S>, ImpactError> {
-    stability_watched(parameters, request, &Stop::default())
-}
-
-/// [`stability`] that can be stopped.
-///
-/// # Errors
-/// As [`stability`]; [`ImpactError::Cancelled`].
-pub fn stability_watched<S: Real>(
     parameters: &Parameters<S>,
     request: &Request,
     stop: &Stop,
@@ -171,7 +161,7 @@ pub fn stability_watched<S: Real>(
     });
     check(stop)?;
     let aware =
-        |orbit: &Orbit<S>| watched_prediction(parameters, orbit, request.kick, request.order, stop);
+        |orbit: &Orbit<S>| impact_aware(parameters, orbit, request.kick, request.order, stop);
     let report = StabilityReport {
         kbm,
         impact_aware: match &found {
@@ -199,7 +189,7 @@ fn orbit_report<S: Real>(
         .and_then(|flow| equivalent_orbit(&flow, &Drive::new(parameters)?))
         .ok()
         .map(|form| FormReport { phase: form.phase_angle(), cosine: form.cosine, sine: form.sine });
-    let clearance = clearance_watched(parameters, &orbit, stop);
+    let clearance = clearance(parameters, &orbit, stop);
     let penetrates = match &clearance {
         Ok(None) => Some(false),
         Ok(Some(found)) => found.margin.sign().and_then(|sign| match sign {
@@ -221,7 +211,7 @@ fn exact_report<S: Real>(
     let (mut verdict, zeros_in_unit_disc) = exact_verdict(&g);
     let mut growth = None;
     if !parameters.velocity_gain.sign().is_some_and(|sign| sign.is_eq()) {
-        growth = watched_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS, stop).ok();
+        growth = piecewise_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS, stop).ok();
         verdict = growth.as_ref().map_or(Verdict::Neutral, Growth::verdict);
     }
     let multipliers = multipliers(&g, request.least_modulus);
@@ -239,25 +229,13 @@ pub fn certified_stability(
     parameters: &ExactParameters,
     request: &Request,
     digits: u32,
-) -> Result<StabilityReport<Certified>, ImpactError> {
-    certified_stability_watched(parameters, request, digits, &Stop::default())
-}
-
-/// [`certified_stability`] that can be stopped.
-///
-/// # Errors
-/// As [`stability`]; [`ImpactError::Cancelled`].
-pub fn certified_stability_watched(
-    parameters: &ExactParameters,
-    request: &Request,
-    digits: u32,
     stop: &Stop,
 ) -> Result<StabilityReport<Certified>, ImpactError> {
     let wanted = digits.saturating_mul(4).saturating_add(8);
     let mut bits = wanted.saturating_add(64);
     let mut rounds = 0;
     loop {
-        let report = stability_watched(&parameters.certified(bits), request, stop)?;
+        let report = stability(&parameters.certified(bits), request, stop)?;
         rounds += 1;
         if rounds > 3 || report.has_bits(i64::from(wanted) * 5 / 6) {
             return Ok(report);

@@ -42,16 +42,22 @@ pub fn zero_count<S: Real>(g: &Characteristic<S>, radius: f64) -> Option<ZeroCou
 }
 
 /// How the way around the circle ended.
+#[doc(hidden)]
 #[derive(PartialEq, Eq)]
-enum Walk {
+pub enum Walk {
+    /// So many zeros.
     Around(ZeroCount),
+    /// A zero on or near the circle.
     Undecided,
+    /// Steps are too short.
     OutOfSteps,
     /// |G| leaves the range of doubles.
     OutOfRange,
 }
 
-fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
+/// The way around the circle.
+#[doc(hidden)]
+pub fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
     let unit = g.period();
     let size = unit.number(radius);
     // The angle is a multiple of pi, exactly representable as a part of it: counted from w = radius
@@ -132,7 +138,8 @@ fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
 }
 
 /// A length h with |G'| h + M (h/R)^2/(1 - h/R) <= 0.9 |G|, h <= R/2.
-fn safe_step<S: Real>(g: &Characteristic<S>, w: &Complex<f64>, floor: f64, slope: f64) -> f64 {
+#[doc(hidden)]
+pub fn safe_step<S: Real>(g: &Characteristic<S>, w: &Complex<f64>, floor: f64, slope: f64) -> f64 {
     let mut reach = g.scale(w);
     loop {
         // The centre is rounded to doubles.
@@ -143,96 +150,5 @@ fn safe_step<S: Real>(g: &Characteristic<S>, w: &Complex<f64>, floor: f64, slope
             return step;
         }
         reach /= 2.0;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::characteristic::Kick;
-    use crate::orbit::orbit;
-    use crate::parameters::{Branch, Parameters};
-
-    /// On the disc of a safe step G stays within its budget, so no turn can be missed.
-    #[test]
-    fn a_step_stays_within_its_budget() {
-        let mut longest = 0.0_f64;
-        for n in 0..60 {
-            let spread = f64::from(n % 7) / 3.0 - 1.0;
-            let parameters = Parameters {
-                alpha: 1.0,
-                omega: 2.0 + f64::from(n) / 20.0,
-                periods: 1 + n % 3,
-                restitution: 0.8,
-                wall: -0.2,
-                damping: 0.1,
-                force: 1.0,
-                displacement_gain: 0.4 * spread,
-                velocity_gain: -0.3 * spread,
-                branch: Branch::Plus,
-            };
-            let found = orbit(&parameters).ok();
-            let Some(found) = found else { continue };
-            let g = Characteristic::new(&parameters, &found, Kick::Mean);
-            for m in 0..40 {
-                let (sin, cos) = (std::f64::consts::PI * f64::from(m) / 40.0).sin_cos();
-                let w = Complex::new(cos, sin);
-                let (value, slope) = g.value_and_slope(&w);
-                let size = value.modulus();
-                let step = safe_step(&g, &w, size, slope.modulus());
-                for k in 0..24 {
-                    let (sin, cos) = (f64::from(k) * 0.27).sin_cos();
-                    let there = w.clone() + Complex::new(step * cos, step * sin);
-                    let change = (g.value_and_slope(&there).0 - &value).modulus() / size;
-                    assert!(change < 0.91, "{parameters:?} {change}");
-                    longest = longest.max(change);
-                }
-            }
-        }
-        assert!(longest > 0.3, "the steps are needlessly short: {longest}");
-    }
-
-    fn flight_with_gain(displacement_gain: f64) -> Characteristic<f64> {
-        let parameters = Parameters {
-            alpha: 1.0,
-            omega: 2.6,
-            periods: 1,
-            restitution: 0.8,
-            wall: 0.0,
-            damping: 0.1,
-            force: 1.0,
-            displacement_gain,
-            velocity_gain: 0.0,
-            branch: Branch::Plus,
-        };
-        Characteristic::new(&parameters, &orbit(&parameters).unwrap(), Kick::None)
-    }
-
-    /// |G| up to 1e200: the product of two values is out of range. Against steps of equal length.
-    #[test]
-    fn large_values_are_counted() {
-        let g = flight_with_gain(4000.0);
-        let steps = 100_000;
-        let argument = |n: i32| {
-            let (sin, cos) = (std::f64::consts::PI * f64::from(n) / f64::from(steps)).sin_cos();
-            let value = g.value_and_slope(&Complex::new(10.0 * cos, 10.0 * sin)).0;
-            assert!(value.re.hypot(value.im) < 1e300);
-            value.im.atan2(value.re)
-        };
-        let whole = std::f64::consts::TAU;
-        let turn = |n: i32| {
-            let change = argument(n + 1) - argument(n);
-            change - whole * (change / whole).round()
-        };
-        let angle: f64 = (0..steps).map(turn).sum();
-        let zeros = (2.0 * angle / whole).round() as u32;
-        assert!(zeros > 20, "{zeros}");
-        assert_eq!(zero_count(&g, 10.0).map(|count| count.zeros), Some(zeros));
-    }
-
-    /// exp(1e10) on the circle ends the walk before it begins.
-    #[test]
-    fn values_out_of_range_are_found_at_once() {
-        assert!(walk(&flight_with_gain(1e20), 1.0) == Walk::OutOfRange);
     }
 }

@@ -30,6 +30,7 @@ pub mod averaging {
     };
 }
 pub mod catalogue;
+pub mod choices;
 pub mod classification;
 mod convergence;
 mod derive;

@@ -13,7 +13,7 @@
 use crate::hyperbolic::{FourierForm, Hyperbolic, HyperbolicRing, PiPolynomial, beta};
 use crate::quadrature::{Strip, trapezoid};
 use crate::{Factor, Potential};
-use lindstedt_algebra::Ring;
+use lindstedt_algebra::{Ring, power};
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Integer, Rational};
 
@@ -40,7 +40,7 @@ impl Potential {
             (_, Factor::Power(0)) => Some(ring.one()),
             (Self::Pendulum { .. }, Factor::Sine(k)) => half_turns(k).map(|(_, sine)| sine),
             (Self::Pendulum { .. }, Factor::Cosine(k)) => half_turns(k).map(|(cosine, _)| cosine),
-            (_, Factor::Power(m)) => Some(ring.power(&self.description()?.shape, *m)),
+            (_, Factor::Power(m)) => Some(power(&ring, &self.description()?.shape, *m)),
             _ => None,
         }
     }
@@ -67,7 +67,7 @@ impl Potential {
             _ => {}
         }
         let ring = HyperbolicRing;
-        let product = ring.mul(&self.along(factor)?, &ring.power(&self.velocity_shape()?, n));
+        let product = ring.mul(&self.along(factor)?, &power(&ring, &self.velocity_shape()?, n));
         let integral = product.integrate()?.ball(balls);
         let power = balls.powi(&self.velocity_scale(balls)?, i64::from(n))?;
         let value = balls.div(&balls.mul(&power, &integral), &rate)?;

@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A real number: an `f64` (rounding errors not tracked) or a [`Certified`] ball.
 ///
-/// Every formula of the crate is written once over this trait. Division by zero, roots of negative
+/// The formulas of impact orbits and of their stability are written once over this trait. Division by zero, roots of negative
 /// numbers and the like give a number that is not finite (NaN or a ball of infinite radius), which
 /// survives every operation, and are refused at the end.
 pub trait Real:

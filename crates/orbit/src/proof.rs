@@ -239,13 +239,7 @@ impl Proof {
         self.orbits[0].harmonic(k)
     }
 
-    /// (x_i, x_i') of the unknown i, from 0, at a time; nothing where there are fewer.
-    #[must_use]
-    pub fn unknown_at(&self, i: usize, time: &Rational) -> Option<(Ball, Ball)> {
-        Some(self.orbits.get(i)?.at(time))
-    }
-
-    /// The same at a phase tau in radians.
+    /// (x_i, x_i') of the unknown i, from 0, at a phase tau in radians; nothing where there are fewer.
     #[must_use]
     pub fn unknown_at_phase(&self, i: usize, phase: &Ball) -> Option<(Ball, Ball)> {
         Some(self.orbits.get(i)?.at_phase(phase))

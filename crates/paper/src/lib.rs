@@ -31,6 +31,13 @@ mod values;
 mod verdict;
 mod vibro_impact;
 
+/// What the tests of single rules reach: no part of the interface.
+#[doc(hidden)]
+pub mod rules {
+    pub use crate::page::{latex, numbers, numeric};
+    pub use crate::vibro_impact::{completions, parse};
+}
+
 pub use compare::Decimal;
 pub use oscillator::section_three;
 pub use printed::{PrintedForm, printed_forms};

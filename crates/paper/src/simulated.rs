@@ -110,7 +110,7 @@ impl Orbit {
             stuck,
             least,
             largest,
-            growth: zero_one(&every_second).map_or(f64::NAN, |test| test.k),
+            growth: zero_one(&every_second, &go_on).map_or(f64::NAN, |test| test.k),
         })
     }
 

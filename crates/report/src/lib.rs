@@ -17,6 +17,13 @@ mod present;
 mod table;
 mod text;
 
+/// What the tests of single rules reach: no part of the interface.
+#[doc(hidden)]
+pub mod rules {
+    pub use crate::mathml::balanced;
+    pub use crate::present::{angle, shade};
+}
+
 pub use document::{Block, Document, Part};
 pub use figure::{Figure, FigureError};
 pub use format::{Format, harmless, standalone};

@@ -203,7 +203,7 @@ fn collect<R: Real>(
         if tick().is_break() {
             return Ok(None);
         }
-        let point = match map.next_point_while(tick) {
+        let point = match map.next_point(tick) {
             Err(SimulateError::Stopped) => return Ok(None),
             point => point?,
         };

@@ -31,7 +31,7 @@ pub struct Moment {
 
 /// An event on the way.
 #[derive(Clone, Debug)]
-pub struct Happening {
+pub struct Occurrence {
     /// What.
     pub kind: EventKind,
     /// When.
@@ -42,7 +42,7 @@ pub struct Happening {
     pub after: [Float; 2],
 }
 
-impl Happening {
+impl Occurrence {
     /// An impact, or a hit without rebound.
     #[must_use]
     pub fn is_impact(&self) -> bool {
@@ -71,7 +71,7 @@ pub struct Dot {
 #[derive(Clone, Debug)]
 pub struct Course {
     /// The events, but for those of sections and for switches that nothing comes of.
-    pub events: Vec<Happening>,
+    pub events: Vec<Occurrence>,
     /// The states at the times asked for.
     pub samples: Vec<Moment>,
     /// The points of the section; at impacts the state just before.
@@ -125,7 +125,7 @@ impl Course {
     /// How many events there are of that name; hits without rebound are impacts.
     #[must_use]
     pub fn count(&self, name: &str) -> usize {
-        let is = |e: &&Happening| match name {
+        let is = |e: &&Occurrence| match name {
             "impact" => e.is_impact(),
             _ => e.kind.name() == name,
         };
@@ -134,7 +134,7 @@ impl Course {
 
     /// The latest moment of so many events, samples and points, if it is after the start.
     fn latest(&self, [events, samples, points]: [usize; 3]) -> Option<Moment> {
-        let after = |event: &Happening| {
+        let after = |event: &Occurrence| {
             let (time, state) = (event.time.clone(), event.after.clone());
             Moment { time, state, others: Vec::new(), stuck: false }
         };
@@ -168,7 +168,7 @@ impl Course {
         // Points of a section at impacts stand for these impacts, in order.
         let at_impacts = self.points_at_impacts;
         let mut old_points = std::mem::take(&mut self.points).into_iter();
-        let mut run: Vec<(Happening, Option<Moment>)> = Vec::new();
+        let mut run: Vec<(Occurrence, Option<Moment>)> = Vec::new();
         for event in std::mem::take(&mut self.events) {
             if matches!(event.kind, EventKind::Impact { .. }) {
                 run.push((event, if at_impacts { old_points.next() } else { None }));

@@ -1,7 +1,7 @@
 //! MPFR floats as real numbers.
 
 use crate::error::SimulateError;
-use crate::integrator::real::Real;
+use crate::integrator::real::{Places, Real};
 use crate::integrator::{Integrator, Observer};
 use crate::outcome::Outcome;
 use rug::{Float, Rational};
@@ -27,53 +27,14 @@ impl Digits {
     }
 }
 
-impl Real for Digits {
+impl Places for Digits {
     type Element = Float;
 
-    fn advance(
-        flow: &mut Integrator<'_, Self>,
-        target: &Float,
-        observer: &mut Observer<'_, Self>,
-    ) -> Result<Outcome, SimulateError> {
-        flow.advance_here(target, observer)
-    }
-    fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
-        flow.begin_here()
-    }
-
-    fn bits(&self) -> u32 {
-        self.bits
-    }
     fn zero(&self) -> Float {
         Float::new(self.bits)
     }
     fn double(&self, x: f64) -> Float {
         Float::with_val(self.bits, x)
-    }
-    fn rational(&self, q: &Rational) -> Float {
-        Float::with_val(self.bits, q)
-    }
-    fn float(&self, x: &Float) -> Float {
-        Float::with_val(self.bits, x)
-    }
-    fn to_f64(&self, x: &Float) -> f64 {
-        x.to_f64()
-    }
-    fn to_float(&self, x: &Float) -> Float {
-        x.clone()
-    }
-    fn sign(&self, x: &Float) -> i8 {
-        x.cmp0().map_or(0, |order| order as i8)
-    }
-    fn log2(&self, x: &Float) -> f64 {
-        if x.is_zero() {
-            return f64::NEG_INFINITY;
-        }
-        // |x| = m 2^e with 1/2 <= m < 1; the exponent may be far outside of f64.
-        x.get_exp().map_or(f64::NAN, |e| {
-            let (mantissa, _) = x.to_f64_exp();
-            mantissa.abs().log2() + f64::from(e)
-        })
     }
     fn set(&self, to: &mut Float, x: &Float) {
         to.clone_from(x);
@@ -122,5 +83,47 @@ impl Real for Digits {
     }
     fn power(&self, to: &mut Float, x: &Float, p: &Float) {
         rug::Assign::assign(to, rug::ops::Pow::pow(x, p));
+    }
+}
+
+impl Real for Digits {
+    fn advance(
+        flow: &mut Integrator<'_, Self>,
+        target: &Float,
+        observer: &mut Observer<'_, Self>,
+    ) -> Result<Outcome, SimulateError> {
+        flow.advance_here(target, observer)
+    }
+    fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
+        flow.begin_here()
+    }
+
+    fn bits(&self) -> u32 {
+        self.bits
+    }
+    fn rational(&self, q: &Rational) -> Float {
+        Float::with_val(self.bits, q)
+    }
+    fn float(&self, x: &Float) -> Float {
+        Float::with_val(self.bits, x)
+    }
+    fn to_f64(&self, x: &Float) -> f64 {
+        x.to_f64()
+    }
+    fn to_float(&self, x: &Float) -> Float {
+        x.clone()
+    }
+    fn sign(&self, x: &Float) -> i8 {
+        x.cmp0().map_or(0, |order| order as i8)
+    }
+    fn log2(&self, x: &Float) -> f64 {
+        if x.is_zero() {
+            return f64::NEG_INFINITY;
+        }
+        // |x| = m 2^e with 1/2 <= m < 1; the exponent may be far outside of f64.
+        x.get_exp().map_or(f64::NAN, |e| {
+            let (mantissa, _) = x.to_f64_exp();
+            mantissa.abs().log2() + f64::from(e)
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! The integrator: steps, and the loop over them.
 
 pub(crate) mod arithmetic;
+mod escape;
 mod lanes;
 pub(crate) mod real;
 
@@ -11,6 +12,7 @@ use crate::report::{Report, Work};
 use crate::roots::RootFinder;
 use crate::series::{Phase, Series};
 use crate::system::System;
+use escape::Runaway;
 use real::Real;
 use std::ops::ControlFlow;
 
@@ -106,16 +108,6 @@ pub enum Next {
     Reached,
     /// The tick broke it off.
     Stopped,
-}
-
-/// The step at which x, on its way from zero, counted as escaping (see [`Integrator::escapes`]).
-#[derive(Clone, Copy, Debug)]
-struct Runaway {
-    steps: u64,
-    /// log2 |x|.
-    size: f64,
-    /// log2 |x/x'|.
-    time: f64,
 }
 
 /// The observer of an integration: told of every segment and event; breaks it off if it likes.
@@ -398,75 +390,6 @@ impl<'s, R: Real> Integrator<'s, R> {
             None => ControlFlow::Continue(()),
         };
         Ok(if told.is_break() { told } else { event })
-    }
-
-    /// Whether steps end at a singularity of x(t): x has left its start by 2^10 and the largest state
-    /// by 2^20, or x' alone by 2^20.
-    fn escapes(&self) -> bool {
-        let real = &self.system.real;
-        let size = |x: &R::Element| real.log2(x);
-        let largest = self.state.iter().map(size).fold(f64::NEG_INFINITY, f64::max);
-        let above = |index: usize, bits: f64| {
-            self.state.get(index).is_some_and(|x| size(x) > self.log2_start + bits)
-        };
-        above(0, 10.0) && largest > self.log2_start + 20.0 || above(1, 20.0)
-    }
-
-    /// A pole of x(t) that steps do not come near to, because the motion is stiff there: after
-    /// x = C (t* - t)^-p, |x/x'| = (t* - t)/p, while |x| grows by a factor 2^g the time |x/x'|
-    /// shrinks by 2^s with g = p s. Said where s is four or more with p up to 10 (a double
-    /// exponential has a larger one by then) and more steps were taken on the way than to a pole
-    /// that is not stiff.
-    fn runs_away(&mut self) -> Option<SimulateError> {
-        let real = &self.system.real;
-        let [x, velocity] = self.state.get(..2)? else { return None };
-        let outwards = real.sign(x) * real.sign(velocity) > 0;
-        let size = real.log2(x);
-        let time = size - real.log2(velocity);
-        if !outwards || size <= self.log2_start + 10.0 || !self.escapes() {
-            self.runaway = None;
-            return None;
-        }
-        let steps = self.work.steps;
-        let began = *self.runaway.get_or_insert(Runaway { steps, size, time });
-        let (grown, shrunk) = (size - began.size, began.time - time);
-        let many = 1000 + 16 * u64::from(real.bits());
-        let is_pole = shrunk >= 4.0 && grown > 0.0 && grown <= 10.0 * shrunk;
-        (steps - began.steps > many && is_pole).then(|| SimulateError::Escape {
-            time: self.seconds() + time.exp2() * grown / shrunk,
-            displacement: real.to_f64(x),
-        })
-    }
-
-    /// |w|^p near w = 0 or another singularity.
-    fn stuck(&self, time: f64) -> SimulateError {
-        let real = &self.system.real;
-        let near = |row: usize| real.log2(self.series.rows.at(row, 0));
-        let nearest = (0..self.system.switches.len())
-            .filter(|index| self.system.switches[*index].branch)
-            .min_by(|a, b| {
-                let rows = (self.system.switches[*a].row, self.system.switches[*b].row);
-                near(rows.0).total_cmp(&near(rows.1))
-            });
-        match nearest {
-            Some(switch) => SimulateError::BranchPoint { switch, time },
-            None if self.escapes() => {
-                // x has left its start by 2^10 at a pole; in a collision, or where x grows like a
-                // logarithm, x' alone is unbounded.
-                let x = self.state.first();
-                let displacement = x.map_or(f64::NAN, |x| real.to_f64(x));
-                // Doubles end at 2^1024: no pole, however large.
-                if self.system.real.bits() <= 53 && x.is_some_and(|x| real.log2(x) > 900.0) {
-                    return SimulateError::NotFinite { time };
-                }
-                if x.is_some_and(|x| real.log2(x) > self.log2_start + 10.0) {
-                    SimulateError::Escape { time, displacement }
-                } else {
-                    SimulateError::UnboundedVelocity { time, displacement }
-                }
-            }
-            None => SimulateError::StepTooSmall { time },
-        }
     }
 
     /// The series about the present state; returns how long the delayed rows hold.

@@ -1,6 +1,6 @@
 //! One integration in one arithmetic, and what is kept of it.
 
-use crate::course::{Course, Dot, End, Happening, Moment};
+use crate::course::{Course, Dot, End, Moment, Occurrence};
 use crate::digits::Digits;
 use crate::error::SimulateError;
 use crate::integrator::real::{Doubles, Real};
@@ -217,14 +217,14 @@ impl<'p, R: Real> Keeper<'p, R> {
                 let (before, _) = split(&self.real, event.before);
                 let (after, others) = split(&self.real, event.after);
                 let time = self.real.to_float(event.time);
-                self.event(Happening { kind: event.kind, time, before, after }, others);
+                self.event(Occurrence { kind: event.kind, time, before, after }, others);
             }
         }
         self.ended.is_some()
     }
 
     /// An event with the states of further unknowns, which do not jump.
-    fn event(&mut self, event: Happening, others: Vec<Float>) {
+    fn event(&mut self, event: Occurrence, others: Vec<Float>) {
         let (section, end) = (self.plan.section, &self.plan.end);
         let maximum = matches!(event.kind, EventKind::Section { rising: false, .. });
         let impact = event.is_impact();

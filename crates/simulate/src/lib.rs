@@ -7,7 +7,7 @@
 //! A [`Model`] (expressions, walls, sections, history) is compiled for one arithmetic
 //! ([`Doubles`] or [`Digits`]) and one set of [`Parameters`] into a [`System`]; an [`Integrator`]
 //! runs on it and tells an observer of every [`Segment`] (a Taylor polynomial per state) and every
-//! [`Event`]. [`Trajectory`] keeps both, [`monodromy`] returns the derivative of the flow,
+//! [`Event`]. [`Trajectory`] keeps the polynomials, [`monodromy`] returns the derivative of the flow,
 //! [`estimate`] the error of anything by a run with more digits. All results are estimated: the
 //! truncation error of every step is kept at the tolerance by the last two coefficients and
 //! checked by the residual at its end, rounding errors are not bounded.
@@ -15,7 +15,7 @@
 //! ```
 //! use lindstedt_equation::{Crossing, Expression, Impact};
 //! use lindstedt_simulate::{
-//!     Doubles, Integrator, Model, Parameters, Quantity, Settings, Trajectory,
+//!     Doubles, Integrator, Model, Parameters, Quantity, Report, Settings, go_on,
 //! };
 //!
 //! // x'' = -x with a wall at x = -1/2 that gives back R of the speed.
@@ -30,10 +30,14 @@
 //! let parameters = Parameters::new().with("s", value("-1/2")).with("R", value("0.999"));
 //! let system = model.compile(Doubles, &parameters)?;
 //! let mut flow = Integrator::new(&system, &0.0, &[1.0, 0.0], Settings::for_digits(16))?;
-//! let mut trajectory = Trajectory::new(Doubles);
-//! flow.advance(&3.0, &mut |report| trajectory.record(report))?;
-//! let first = trajectory.events[0].time;
-//! assert!((first - 2.0 * std::f64::consts::PI / 3.0).abs() < 1e-15);
+//! let mut times = Vec::new();
+//! flow.advance(&3.0, &mut |report| {
+//!     if let Report::Event(event) = report {
+//!         times.push(*event.time);
+//!     }
+//!     go_on()
+//! })?;
+//! assert!((times[0] - 2.0 * std::f64::consts::PI / 3.0).abs() < 1e-15);
 //! # Ok::<(), lindstedt_simulate::SimulateError>(())
 //! ```
 
@@ -76,14 +80,14 @@ mod zero_one;
 
 pub use bifurcation::{Column, DiagramSettings, Sweep, diagram};
 pub use continuation::continue_tangency;
-pub use course::{Course, Dot, End, Happening, Moment, align, cut};
+pub use course::{Course, Dot, End, Moment, Occurrence, align, cut};
 pub use digits::Digits;
 pub use error::{SimulateError, Surface};
 pub use estimate::{Computation, Estimated, estimate};
-pub use integrator::real::{Doubles, Real};
+pub use integrator::real::{Doubles, Places, Real};
 pub use integrator::{Integrator, Next, Observer, Settings, Tick, Together, go_on};
 pub use keeper::{Cut, Flow, Plan};
-pub use linear::{Monodromy, monodromy, monodromy_while};
+pub use linear::{Monodromy, monodromy};
 pub use lyapunov::{
     LyapunovExponent, LyapunovSettings, largest_lyapunov_exponent, largest_lyapunov_exponents,
 };
@@ -96,5 +100,5 @@ pub use report::{Event, EventKind, Report, Segment, Work};
 pub use saddle::{Saddle, saddle, unstable_manifold};
 pub use system::{Model, System};
 pub use tangency::{Homoclinic, Loop, Return, Tangency};
-pub use trajectory::{Occurrence, Trajectory};
-pub use zero_one::{ZeroOne, zero_one, zero_one_while};
+pub use trajectory::Trajectory;
+pub use zero_one::{ZeroOne, zero_one};

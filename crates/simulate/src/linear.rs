@@ -2,7 +2,7 @@
 
 use crate::error::SimulateError;
 use crate::integrator::real::Real;
-use crate::integrator::{Integrator, Settings, Tick, go_on};
+use crate::integrator::{Integrator, Settings, Tick};
 use crate::system::System;
 use nalgebra::{Complex, DMatrix};
 
@@ -97,18 +97,8 @@ impl<R: Real> Monodromy<R> {
 /// switchings and sliding; of a periodic orbit if the states at both ends agree.
 ///
 /// Errors: as of [`Integrator::advance`]; the system must have been compiled from a model with
-/// [`crate::Model::linearised`].
+/// [`crate::Model::linearised`]. `tick` is asked at every step whether to go on ([`SimulateError::Stopped`]).
 pub fn monodromy<R: Real>(
-    system: &System<R>,
-    times: (&R::Element, &R::Element),
-    state: &[R::Element],
-    settings: Settings,
-) -> Result<Monodromy<R>, SimulateError> {
-    monodromy_while(system, times, state, settings, &go_on)
-}
-
-/// The same; `tick` is asked at every step whether to go on ([`SimulateError::Stopped`]).
-pub fn monodromy_while<R: Real>(
     system: &System<R>,
     (start, end): (&R::Element, &R::Element),
     state: &[R::Element],

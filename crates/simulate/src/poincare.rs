@@ -2,7 +2,7 @@
 
 use crate::error::{SimulateError, Surface};
 use crate::integrator::real::Real;
-use crate::integrator::{Integrator, Settings, Tick, go_on};
+use crate::integrator::{Integrator, Settings, Tick};
 use crate::report::{EventKind, Report};
 use crate::system::System;
 use std::collections::VecDeque;
@@ -68,7 +68,9 @@ impl<E> Point<E> {
 ///
 /// ```
 /// use lindstedt_equation::Expression;
-/// use lindstedt_simulate::{Doubles, Model, Parameters, PoincareMap, Section, Settings, Surface};
+/// use lindstedt_simulate::{
+///     Doubles, Model, Parameters, PoincareMap, Section, Settings, Surface, go_on,
+/// };
 ///
 /// let x = Expression::DISPLACEMENT;
 /// let model = Model::second_order(&(Expression::ACCELERATION + x.clone()))?.with_section(x);
@@ -77,7 +79,7 @@ impl<E> Point<E> {
 /// let section = Section::Events { surface, rising: Some(true), patience: 10.0 };
 /// let settings = Settings::for_digits(16);
 /// let mut map = PoincareMap::new(&system, &0.0, &[1.0, 0.0], section, settings)?;
-/// let first = map.next_point()?.map_or(0.0, |point| point.time);
+/// let first = map.next_point(&go_on)?.map_or(0.0, |point| point.time);
 /// assert!((first - 1.5 * std::f64::consts::PI).abs() < 1e-14);
 /// # Ok::<(), lindstedt_simulate::SimulateError>(())
 /// ```
@@ -104,14 +106,9 @@ impl<'s, R: Real> PoincareMap<'s, R> {
     }
 
     /// The next point, or nothing if the patience is at its end. Exact up to the errors of the
-    /// integration; times of a stroboscopic map are rounded once, not summed. Errors: as of
-    /// [`Integrator::advance`].
-    pub fn next_point(&mut self) -> Result<Option<Point<R::Element>>, SimulateError> {
-        self.next_point_while(&go_on)
-    }
-
-    /// The same; `tick` is asked at every step whether to go on ([`SimulateError::Stopped`]).
-    pub fn next_point_while(
+    /// integration; times of a stroboscopic map are rounded once, not summed. `tick` is asked at every step whether to
+    /// go on ([`SimulateError::Stopped`]). Errors: as of [`Integrator::advance`].
+    pub fn next_point(
         &mut self,
         tick: &Tick<'_>,
     ) -> Result<Option<Point<R::Element>>, SimulateError> {

@@ -283,7 +283,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
 mod tests {
     use super::*;
     use crate::digits::Digits;
-    use crate::integrator::real::Doubles;
+    use crate::integrator::real::{Doubles, Places};
 
     fn polynomial(roots: &[f64]) -> Vec<f64> {
         let mut c = vec![1.0];

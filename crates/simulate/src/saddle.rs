@@ -3,7 +3,7 @@
 use crate::error::SimulateError;
 use crate::integrator::real::Doubles;
 use crate::integrator::{Settings, Tick};
-use crate::linear::monodromy_while;
+use crate::linear::monodromy;
 use crate::poincare::{PoincareMap, Section};
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
@@ -80,7 +80,7 @@ fn newton(
     let mut state = guess;
     let (mut moved, mut reach) = (f64::INFINITY, None);
     for _ in 0..30 {
-        let result = monodromy_while(system, (&0.0, &period), &state, settings, tick)?;
+        let result = monodromy(system, (&0.0, &period), &state, settings, tick)?;
         let ([[a, b], [c, d]], [x, v]) = (square(&result.matrix)?, pair(&result.end)?);
         // (M - 1) delta = start - end.
         let [p, q] = [state[0] - x, state[1] - v];
@@ -120,7 +120,7 @@ fn shoot(
         for (k, state) in states.iter().enumerate() {
             let times = [k, k + 1].map(|k| period * k as f64 / PARTS as f64);
             let ends = (&times[0], &times[1]);
-            let result = monodromy_while(system, ends, state, settings, tick)?;
+            let result = monodromy(system, ends, state, settings, tick)?;
             let (m, end) = (square(&result.matrix)?, pair(&result.end)?);
             let next = (k + 1) % PARTS;
             for i in 0..2 {
@@ -204,7 +204,7 @@ pub fn unstable_manifold(
             let state = if index == 0 {
                 start
             } else {
-                map.next_point_while(tick)?.map_or(Ok(start), |point| pair(&point.state))?
+                map.next_point(tick)?.map_or(Ok(start), |point| pair(&point.state))?
             };
             row.push(state);
         }

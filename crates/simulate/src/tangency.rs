@@ -10,7 +10,7 @@
 use crate::error::SimulateError;
 use crate::integrator::real::Doubles;
 use crate::integrator::{Integrator, Settings, Tick};
-use crate::linear::monodromy_while;
+use crate::linear::monodromy;
 use crate::poincare::{PoincareMap, Section};
 use crate::quantity::{Parameters, Quantity};
 use crate::report::Report;
@@ -348,7 +348,7 @@ impl Homoclinic<'_> {
         let mut map = PoincareMap::new(&system, &0.0, &start, section, Self::settings())?;
         let (mut away, mut nearest) = (false, (f64::INFINITY, 0));
         for periods in 1..50 {
-            let Some(point) = map.next_point_while(tick)? else { break };
+            let Some(point) = map.next_point(tick)? else { break };
             let [u, s] = saddle.coordinates(&point.state);
             let distance = u.hypot(s);
             away |= distance > AWAY;
@@ -381,7 +381,7 @@ impl Homoclinic<'_> {
         let amount = self.amount(saddle, phase);
         let end = f64::from(periods) * self.period;
         let start = saddle.unstable(amount);
-        let flow = monodromy_while(system, (&0.0, &end), &start, Self::settings(), tick)?;
+        let flow = monodromy(system, (&0.0, &end), &start, Self::settings(), tick)?;
         let [u, _] = saddle.coordinates(&flow.end);
         // d(start)/dsigma = amount ln(mu) (unstable direction).
         let rate = amount * saddle.multipliers[0].ln();

@@ -2,30 +2,16 @@
 
 use crate::integrator::real::Real;
 use crate::local::Shape;
-use crate::report::{EventKind, Report};
-
-/// An event, kept.
-#[derive(Clone, Debug)]
-pub struct Occurrence<E> {
-    /// When.
-    pub time: E,
-    /// What.
-    pub kind: EventKind,
-    /// The states just before.
-    pub before: Vec<E>,
-    /// The states just after.
-    pub after: Vec<E>,
-}
+use crate::report::Report;
 
 #[derive(Clone, Debug)]
 struct Piece<R: Real> {
     start: R::Element,
     length: R::Element,
     shape: Shape<R>,
-    modes: Vec<i8>,
 }
 
-/// Dense output: the polynomials of all steps, and all events.
+/// Dense output: the polynomials of all steps.
 ///
 /// ```
 /// use lindstedt_equation::Expression;
@@ -45,32 +31,22 @@ struct Piece<R: Real> {
 pub struct Trajectory<R: Real> {
     real: R,
     pieces: Vec<Piece<R>>,
-    /// The events, in order.
-    pub events: Vec<Occurrence<R::Element>>,
 }
 
 impl<R: Real> Trajectory<R> {
     /// An empty one.
     pub fn new(real: R) -> Self {
-        Self { real, pieces: Vec::new(), events: Vec::new() }
+        Self { real, pieces: Vec::new() }
     }
 
     /// Keeps a report; for use as an observer, never breaks off.
     pub fn record(&mut self, report: &Report<'_, R>) -> std::ops::ControlFlow<()> {
-        match report {
-            Report::Segment(segment) => self.pieces.push(Piece {
+        if let Report::Segment(segment) = report {
+            self.pieces.push(Piece {
                 start: segment.start.clone(),
                 length: segment.length.clone(),
                 shape: segment.shape.keep(),
-                modes: segment.modes.to_vec(),
-            }),
-            Report::Event(event) => self.events.push(Occurrence {
-                time: event.time.clone(),
-                kind: event.kind,
-                before: event.before.to_vec(),
-                after: event.after.to_vec(),
-            }),
-            Report::Busy => {}
+            });
         }
         std::ops::ControlFlow::Continue(())
     }
@@ -97,17 +73,5 @@ impl<R: Real> Trajectory<R> {
             s = piece.length.clone();
         }
         piece.shape.borrow().value(&self.real, state, &s)
-    }
-
-    /// The signs of the switches at a time; 0: sliding.
-    #[must_use]
-    pub fn modes(&self, time: &R::Element) -> Option<&[i8]> {
-        Some(&self.piece(time)?.modes)
-    }
-
-    /// The number of segments.
-    #[must_use]
-    pub fn segments(&self) -> usize {
-        self.pieces.len()
     }
 }

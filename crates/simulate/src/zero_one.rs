@@ -1,6 +1,6 @@
 //! The 0-1 test for chaos of a time series.
 
-use crate::integrator::{Tick, go_on};
+use crate::integrator::Tick;
 
 /// The growth rate K of the mean square displacement of the series' translation variables: near 0
 /// for regular, near 1 for chaotic motion.
@@ -27,22 +27,17 @@ const FREQUENCIES: u32 = 100;
 /// A statistical estimate, with no bound; errors like 1/sqrt(N). The series must not be sampled
 /// too finely: take stroboscopic points, and every m-th of them where the attractor has m bands
 /// (several bands look regular). Nothing for less than 100 points or values that are not finite.
-/// Cost: O(100 N^2/10).
+/// `tick` is asked before each of the 100 frequencies, nothing if it breaks off. Cost: O(100 N^2/10).
 ///
 /// ```
+/// use lindstedt_simulate::{go_on, zero_one};
 /// let mut x = 0.3;
 /// let logistic: Vec<f64> = (0..2000).map(|_| { x = 3.97 * x * (1.0 - x); x }).collect();
-/// let k = lindstedt_simulate::zero_one(&logistic).map_or(0.0, |test| test.k);
+/// let k = zero_one(&logistic, &go_on).map_or(0.0, |test| test.k);
 /// assert!(k > 0.99);
 /// ```
 #[must_use]
-pub fn zero_one(series: &[f64]) -> Option<ZeroOne> {
-    zero_one_while(series, &go_on)
-}
-
-/// The same; `tick` is asked before each of the 100 frequencies, nothing if it breaks off.
-#[must_use]
-pub fn zero_one_while(series: &[f64], tick: &Tick<'_>) -> Option<ZeroOne> {
+pub fn zero_one(series: &[f64], tick: &Tick<'_>) -> Option<ZeroOne> {
     if series.len() < 100 || !series.iter().all(|x| x.is_finite()) {
         return None;
     }
@@ -101,6 +96,7 @@ fn correlation(d: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::integrator::go_on;
 
     fn logistic(r: f64, count: usize) -> Vec<f64> {
         let mut x = 0.3;
@@ -116,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_logistic_map() {
-        let k = |r| zero_one(&logistic(r, 3000)).unwrap().k;
+        let k = |r| zero_one(&logistic(r, 3000), &go_on).unwrap().k;
         assert!(k(3.55).abs() < 0.05, "{}", k(3.55));
         assert!(k(3.97) > 0.99, "{}", k(3.97));
     }
@@ -125,7 +121,7 @@ mod tests {
     fn a_quasi_periodic_series_is_regular() {
         let series: Vec<f64> =
             (0..3000).map(|n| (f64::from(n) * 2f64.sqrt()).cos() + 0.5).collect();
-        assert!(zero_one(&series).unwrap().k.abs() < 0.1);
+        assert!(zero_one(&series, &go_on).unwrap().k.abs() < 0.1);
     }
 
     /// The oscillation that a mean adds to M_c is taken out: it would drown the growth.
@@ -133,14 +129,15 @@ mod tests {
     fn a_large_mean_changes_little() {
         let series = logistic(3.97, 3000);
         let shifted: Vec<f64> = series.iter().map(|x| x + 20.0).collect();
-        let (k, other) = (zero_one(&series).unwrap().k, zero_one(&shifted).unwrap().k);
+        let (k, other) =
+            (zero_one(&series, &go_on).unwrap().k, zero_one(&shifted, &go_on).unwrap().k);
         assert!((k - other).abs() < 0.02, "{k} {other}");
     }
 
     #[test]
     fn no_answer_without_data() {
-        assert!(zero_one(&[1.0; 99]).is_none());
-        assert!(zero_one(&[f64::NAN; 200]).is_none());
-        assert!(zero_one(&[0.0; 200]).is_some());
+        assert!(zero_one(&[1.0; 99], &go_on).is_none());
+        assert!(zero_one(&[f64::NAN; 200], &go_on).is_none());
+        assert!(zero_one(&[0.0; 200], &go_on).is_some());
     }
 }

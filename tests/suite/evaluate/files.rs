@@ -6,7 +6,7 @@ use super::support::{
 };
 use lindstedt::unstable::equation::{Condition, Problem};
 use lindstedt::unstable::simulate::{
-    Digits, EventKind, Integrator, Model, Parameters, Real, Report, Settings as Precision,
+    Digits, EventKind, Integrator, Model, Parameters, Places, Report, Settings as Precision,
 };
 use lindstedt::{DerivationError, Error, EvaluationError, Exact, Work, unstable::problems};
 use rug::Float;

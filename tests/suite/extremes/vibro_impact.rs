@@ -2,6 +2,7 @@
 
 use super::support::{Grid, rational};
 use lindstedt::Exact;
+use lindstedt_algebra::Stop;
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_impact::report::{Request, certified_stability, stability};
 use rug::Float;
@@ -89,7 +90,12 @@ fn grid_of(gains: &[&str], digits: &[u32]) -> Grid {
             for &digits in digits {
                 let label = format!("{values:?} A = {gain} digits {digits}");
                 grid.cell(&label, |grid| {
-                    let report = match certified_stability(&p, &Request::default(), digits) {
+                    let report = match certified_stability(
+                        &p,
+                        &Request::default(),
+                        digits,
+                        &Stop::default(),
+                    ) {
                         Ok(report) => report,
                         Err(error) => return grid.refused(&error),
                     };
@@ -107,10 +113,11 @@ fn grid_of(gains: &[&str], digits: &[u32]) -> Grid {
                 });
                 let label = format!("{label} in doubles");
                 grid.cell(&label, |grid| {
-                    let report = match stability(&p.nearest(), &Request::default()) {
-                        Ok(report) => report,
-                        Err(error) => return grid.refused(&error),
-                    };
+                    let report =
+                        match stability(&p.nearest(), &Request::default(), &Stop::default()) {
+                            Ok(report) => report,
+                            Err(error) => return grid.refused(&error),
+                        };
                     match &report.orbit {
                         Ok(orbit) if !orbit.orbit.velocity.is_finite() => {
                             grid.defect(&label, format!("velocity {}", orbit.orbit.velocity));

@@ -6,6 +6,7 @@
 use super::support::{ORBITS, Random, parameters};
 use lindstedt::unstable::equation::Expression;
 use lindstedt::unstable::equation::Function::{Cos, Exp, Sin};
+use lindstedt_algebra::Stop;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
 use lindstedt_impact::flow::{Flow, rates};
@@ -55,7 +56,7 @@ fn examine(index: usize, random: &mut Random, with_velocity: bool) -> Option<Poi
     let (truth, growth) = if p.velocity_gain == 0.0 {
         (by_zeros, multipliers(&g, 0.1).ok()?.values.first()?.modulus())
     } else {
-        let found = piecewise_growth(&p, &orbit, 800).unwrap();
+        let found = piecewise_growth(&p, &orbit, 800, &Stop::default()).unwrap();
         (found.verdict(), found.rate)
     };
     let decided = |v: Verdict| v != Verdict::Neutral;

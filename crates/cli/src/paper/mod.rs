@@ -1,14 +1,23 @@
 //! `lindstedt paper`: the paper, formula by formula, as a report.
 
-use crate::arguments::{Format, PaperOptions};
+use crate::arguments::Format;
 use crate::failure::{Failure, NO_ANSWER};
 use crate::output::trouble;
 use crate::session::Session;
 use crate::terminal::warn;
 use crate::{Outcome, output};
+use clap::Args;
 use lindstedt_paper::{Options, page, read};
 use lindstedt_report::Format as Written;
 use std::path::Path;
+
+/// With --out DIR the report and its data are written into that directory.
+#[derive(Debug, Args)]
+pub struct PaperOptions {
+    /// Lower orders, some ten seconds.
+    #[arg(long)]
+    pub quick: bool,
+}
 
 pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
     if let Some(directory) = session.out() {

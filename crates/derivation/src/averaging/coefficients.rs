@@ -4,6 +4,7 @@ use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{PolynomialRing, Symbol};
+use lindstedt_equation::classify::rational_root;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_phase::amplitudes::scalars::{Integers, Over, Scalars};
 use rug::Rational;
@@ -27,9 +28,7 @@ impl Coefficients for Rationals {
         Integers
     }
     fn square_root(&self, a: &Rational) -> Option<Rational> {
-        let square =
-            a.is_positive() && a.numer().is_perfect_square() && a.denom().is_perfect_square();
-        square.then(|| Rational::from((a.numer().clone().sqrt(), a.denom().clone().sqrt())))
+        rational_root(a)
     }
     /// Cosine and sine of a rational number other than zero are irrational.
     fn turn(&self, rate: &Rational, time: &Rational) -> Option<[Rational; 2]> {

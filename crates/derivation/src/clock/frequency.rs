@@ -101,7 +101,7 @@ impl<C: RationalAlgebra> Clockwork<'_, C> {
             })
         };
         let mut named: Vec<_> = monomials.drain(..).map(|m| (symbols(m), m)).collect();
-        named.sort_by(|(a, _), (b, _)| a.cmp(b));
+        named.sort_unstable_by(|(a, _), (b, _)| a.cmp(b));
         let products = self.parts.products(self.constants);
         let mut lifted: Vec<Option<Vec<Polynomial>>> = vec![None; products.len()];
         let mut sums: Vec<Vec<(i64, PowerProduct, Rational)>> = vec![Vec::new(); order + 1];
@@ -123,7 +123,7 @@ impl<C: RationalAlgebra> Clockwork<'_, C> {
             }
         }
         let increasing = |mut terms: Vec<(i64, PowerProduct, Rational)>| {
-            terms.sort_by(|(v, m, _), (w, n, _)| {
+            terms.sort_unstable_by(|(v, m, _), (w, n, _)| {
                 v.cmp(w).then_with(|| m.factors().cmp(n.factors()))
             });
             let terms = terms.into_iter().map(|(_, monomial, c)| (monomial, c)).collect();

@@ -2,6 +2,7 @@
 
 use crate::collocation::orbit_by_exponential;
 use crate::support::{Random, data, exact, parameters};
+use lindstedt_algebra::Stop;
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::convergence::convergence;
@@ -11,7 +12,7 @@ use lindstedt_impact::map::{ImpactMap, Verdict};
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow, uncontrolled_map};
-use lindstedt_impact::report::{Request, stability};
+use lindstedt_impact::report::{Request, certified_stability, stability};
 use lindstedt_impact::zeros::exact_verdict;
 use lindstedt_number::Exact;
 use lindstedt_number::real::Real;
@@ -143,7 +144,7 @@ fn resonance_of_the_force_costs_the_regular_form_nothing() {
         let found = orbit(&p).unwrap();
         near(found.velocity, found.period / (2.0 * 1.8), 1e-14);
         assert_eq!(Drive::new(&p).unwrap_err(), ImpactError::Resonance);
-        let report = stability(&p, &Request::default()).unwrap();
+        let report = stability(&p, &Request::default(), &Stop::default()).unwrap();
         assert_eq!(report.kbm.unwrap_err(), ImpactError::Resonance);
         assert!(report.orbit.unwrap().form.is_none());
         assert!(report.exact.is_some());
@@ -220,7 +221,7 @@ fn damping_from_zero_to_overdamped() {
             let (v, sigma) = orbit_by_exponential(&p).unwrap();
             near(found.velocity, v, 1e-11);
             near(found.saltation, sigma, 1e-11);
-            let report = stability(&p, &Request::default()).unwrap();
+            let report = stability(&p, &Request::default(), &Stop::default()).unwrap();
             assert_ne!(report.exact.unwrap().verdict, Verdict::Neutral);
             let refused = matches!(report.kbm, Err(ImpactError::Overdamped { .. }));
             assert_eq!(refused, damping >= 2.0);
@@ -341,7 +342,7 @@ fn two_orbits_merge_in_the_fold() {
 #[test]
 fn a_missing_equivalent_orbit_leaves_the_other_answers() {
     let p = parameters(&data("O8_saddle")).nearest();
-    let report = stability(&p, &Request::default()).unwrap();
+    let report = stability(&p, &Request::default(), &Stop::default()).unwrap();
     assert!(matches!(report.kbm, Err(ImpactError::BeyondFold { .. })));
     let exact = report.exact.unwrap();
     assert_eq!((exact.verdict, exact.zeros_in_unit_disc), (Verdict::Unstable, Some(1)));
@@ -388,15 +389,13 @@ fn parameters_outside_their_domain_are_named() {
 /// A stop ends the work, and what was stopped is not called undecided.
 #[test]
 fn a_stop_ends_the_work() {
-    use lindstedt_algebra::Stop;
-    use lindstedt_impact::report::certified_stability_watched;
     use std::sync::Arc;
     use std::sync::atomic::{AtomicU32, Ordering};
     let p = ExactParameters { velocity_gain: exact("50"), ..base_exact() };
     let asked = Arc::new(AtomicU32::new(0));
     let counter = Arc::clone(&asked);
     let stop = Stop::new(move || counter.fetch_add(1, Ordering::SeqCst) >= 100);
-    let stopped = certified_stability_watched(&p, &Request::default(), 30, &stop);
+    let stopped = certified_stability(&p, &Request::default(), 30, &stop);
     assert!(matches!(stopped, Err(ImpactError::Cancelled)));
     let asked = asked.load(Ordering::SeqCst);
     assert!((101..500).contains(&asked), "{asked}");

@@ -1,6 +1,7 @@
 //! The growth of the piecewise linear return map, and its error.
 
 use crate::support::{Random, exact, orbit_number, random_orbit};
+use lindstedt_algebra::Stop;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::kick::{piecewise_growth, piecewise_stable};
 use lindstedt_impact::map::Verdict;
@@ -21,7 +22,8 @@ fn the_error_of_the_growth_covers_the_largest_multiplier() {
         let (nearest, balls) = (p.nearest(), p.certified(160));
         let g = Characteristic::new(&balls, &orbit(&balls).unwrap(), Kick::None);
         let truth = multipliers(&g, 0.2).unwrap().values[0].modulus().to_f64();
-        let found = piecewise_growth(&nearest, &orbit(&nearest).unwrap(), 200).unwrap();
+        let found =
+            piecewise_growth(&nearest, &orbit(&nearest).unwrap(), 200, &Stop::default()).unwrap();
         let ratio = found.error / (found.rate - truth).abs();
         assert!(ratio > 1.0, "O{n} A {k}: {found:?} {truth}");
         ratios.push(ratio);
@@ -40,7 +42,8 @@ fn the_error_of_the_growth_covers_a_long_run() {
         p.displacement_gain = random.between(-0.3, 0.3);
         p.velocity_gain = random.between(-0.3, 0.3);
         let Ok(found) = orbit(&p) else { continue };
-        let runs = [400, 6400].map(|flights| piecewise_growth(&p, &found, flights));
+        let runs =
+            [400, 6400].map(|flights| piecewise_growth(&p, &found, flights, &Stop::default()));
         let [Ok(short), Ok(long)] = runs else { continue };
         let ratio = (short.rate - long.rate).abs() / (short.error + long.error);
         assert!(ratio < 4.0, "{p:?}: {short:?} {long:?}");
@@ -62,7 +65,7 @@ fn growth_near_one_is_undecided() {
         let mut at = |gain: f64| {
             p.displacement_gain = gain;
             let found = orbit(&p).ok()?;
-            let growth = piecewise_growth(&p, &found, 400).ok()?;
+            let growth = piecewise_growth(&p, &found, 400, &Stop::default()).ok()?;
             Some((growth, piecewise_stable(&p, &found, 400).ok()?))
         };
         let (mut low, mut high) = (-0.3, 0.3);
@@ -87,7 +90,8 @@ fn growth_near_one_is_undecided() {
             assert_eq!(stable, None, "{growth:?}");
             undecided += 1;
             // The zeros of G, which are not those of the map for B other than 0, decide nothing.
-            let report = stability(&p, &Request::default()).unwrap().exact.unwrap();
+            let report =
+                stability(&p, &Request::default(), &Stop::default()).unwrap().exact.unwrap();
             assert_eq!(report.verdict, Verdict::Neutral, "{report:?}");
             by_zeros += usize::from(report.zeros_in_unit_disc.is_some());
         }

@@ -9,3 +9,4 @@ mod growth;
 mod oracles;
 mod support;
 mod truth;
+mod winding;

@@ -1,5 +1,6 @@
 //! Reading reference numbers; comparison to a number of digits.
 
+use lindstedt_algebra::Stop;
 use lindstedt_impact::flight::{Clearance, clearance};
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
@@ -173,7 +174,7 @@ pub fn random_orbit(random: &mut Random) -> Parameters<f64> {
         };
         let Ok(found) = orbit(&p) else { continue };
         let free = |margin: &Clearance<f64>| margin.margin < 0.0;
-        let clear = clearance(&p, &found).unwrap().as_ref().is_none_or(free);
+        let clear = clearance(&p, &found, &Stop::default()).unwrap().as_ref().is_none_or(free);
         let leading = uncontrolled_map(&p, &found).spectral_radius();
         if clear && (0.2..3.0).contains(&leading) {
             return p;

@@ -2,6 +2,7 @@
 
 use crate::collocation::{monodromy, orbit_by_exponential};
 use crate::support::{Random, data, exact, orbit_number, parameters, random_orbit};
+use lindstedt_algebra::Stop;
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::aware::impact_aware;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
@@ -49,7 +50,7 @@ fn flip_boundary_is_where_the_simulation_flips() {
 #[test]
 fn a_certified_report_without_a_predicted_orbit() {
     let p = parameters(&data("O8_saddle"));
-    let report = certified_stability(&p, &Request::default(), 30).unwrap();
+    let report = certified_stability(&p, &Request::default(), 30, &Stop::default()).unwrap();
     assert!(matches!(report.kbm, Err(ImpactError::BeyondFold { .. })));
     let exact = report.exact.unwrap();
     assert_eq!(exact.verdict, Verdict::Unstable);
@@ -127,7 +128,8 @@ fn impact_aware_series_tends_to_the_exact_multiplier() {
         let errors: Vec<f64> = [1, 3, 40]
             .iter()
             .map(|&order| {
-                let predicted = impact_aware(&p, &found, Kick::Mean, order).unwrap();
+                let predicted =
+                    impact_aware(&p, &found, Kick::Mean, order, &Stop::default()).unwrap();
                 let gamma = &predicted.multipliers[0];
                 let (value, slope) = g.value_and_slope(&gamma.inverse());
                 value.over(&slope).norm_squared().sqrt() * gamma.norm_squared().sqrt()
@@ -168,7 +170,8 @@ fn only_the_impact_aware_prediction_is_right_to_first_order() {
             Ok::<f64, ImpactError>(at(&p, &flow)? - at(&p0, &start)?)
         };
         let aware = |p: &Parameters<f64>| {
-            impact_aware(p, &found, Kick::Mean, 1).map(|found| found.spectral_radius())
+            impact_aware(p, &found, Kick::Mean, 1, &Stop::default())
+                .map(|found| found.spectral_radius())
         };
         let (Ok(e), Ok(after), Ok(before)) = (by(Variant::E), aware(&p), aware(&p0)) else {
             continue;
@@ -249,7 +252,7 @@ fn clearance_agrees_with_dense_sampling() {
             .filter(|&i| at(i) >= at(i - 1) && at(i) >= at(i + 1))
             .map(at)
             .fold(f64::NEG_INFINITY, f64::max);
-        match clearance(&p, &found).unwrap() {
+        match clearance(&p, &found, &Stop::default()).unwrap() {
             None => assert!(sampled == f64::NEG_INFINITY, "{p:?} {sampled}"),
             Some(found) => {
                 assert!((found.margin - sampled).abs() < 1e-5, "{p:?} {} {sampled}", found.margin);
@@ -387,7 +390,7 @@ fn a_chart_equals_its_points() {
                 velocity_gain: plan.rows.value(row),
                 ..base.clone()
             };
-            let report = stability(&p, &request).unwrap();
+            let report = stability(&p, &request, &Stop::default()).unwrap();
             let point = found.point(column, row).unwrap();
             assert_eq!(point.predicted, report.kbm.as_ref().ok().map(|kbm| kbm.verdict));
             assert_eq!(point.exact, report.exact.map(|exact| exact.verdict));
@@ -460,7 +463,8 @@ fn a_certified_report_has_the_digits_asked_for() {
         ..orbit_number(2)
     };
     for digits in [30, 100] {
-        let report = certified_stability(&p, &Request::default(), digits).unwrap();
+        let report =
+            certified_stability(&p, &Request::default(), digits, &Stop::default()).unwrap();
         let bits = i64::from(digits) * 10 / 3;
         let orbit = report.orbit.unwrap();
         assert!(orbit.orbit.velocity.ball().relative_accuracy_bits() > bits);

@@ -6,7 +6,7 @@ use super::setup::Setup;
 use super::{Section, View, difference};
 use crate::{Exact, Number, Work};
 use lindstedt_number::ball::Balls;
-use lindstedt_simulate::{Course, Dot, End, EventKind, Happening, Moment, Quantity};
+use lindstedt_simulate::{Course, Dot, End, EventKind, Moment, Occurrence, Quantity};
 use rug::Float;
 use serde::{Serialize, Serializer};
 use std::fmt::Write;
@@ -217,7 +217,7 @@ impl Numbers {
         a.iter().zip(b).map(|pair| self.state(pair)).collect()
     }
 
-    fn event(&self, (a, b): (&Happening, &Happening)) -> Event {
+    fn event(&self, (a, b): (&Occurrence, &Occurrence)) -> Event {
         let place = [&a.time, &a.after[0], &a.before[1], &a.after[1]];
         Event {
             kind: a.kind.name(),

@@ -9,7 +9,7 @@ use lindstedt_equation::Expression;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
     Doubles, LyapunovExponent, LyapunovSettings, PoincareMap, Section, Settings, SimulateError,
-    Surface, ZeroOne, largest_lyapunov_exponent, zero_one_while,
+    Surface, ZeroOne, largest_lyapunov_exponent, zero_one,
 };
 use rug::Float;
 use serde::Serialize;
@@ -220,7 +220,7 @@ impl Run<'_> {
         let settings = Settings::for_digits(16);
         let section = Section::Period(self.phase);
         let mut map = PoincareMap::new(&system, &0.0, &start, section, settings)?;
-        let point = map.next_point_while(&|| self.tick()).map_err(stopped)?;
+        let point = map.next_point(&|| self.tick()).map_err(stopped)?;
         Ok(point.map_or((0.0, start), |point| (point.time, point.state)))
     }
 
@@ -267,7 +267,7 @@ impl Run<'_> {
         let (mut series, all) = (Vec::new(), self.skipped.saturating_add(self.kept));
         for n in 0..all {
             self.work.tell(Progress::Parts(n as usize, all as usize));
-            let point = map.next_point_while(&|| self.tick()).map_err(stopped)?;
+            let point = map.next_point(&|| self.tick()).map_err(stopped)?;
             let Some(point) = point else {
                 let message = format!("the maxima of x cease after {n}: no series to test");
                 return Err(Refused::no_answer("no-series", message, "another start").into());
@@ -284,7 +284,7 @@ impl Run<'_> {
         let mut k = Vec::new();
         for every in 1..=STRIDES {
             let thinned: Vec<f64> = series.iter().copied().step_by(every).collect();
-            match zero_one_while(&thinned, &|| self.tick()) {
+            match zero_one(&thinned, &|| self.tick()) {
                 Some(found) => {
                     let (low, high) = found.quartiles;
                     let number = number(found.k, (high - low) / 2.0);

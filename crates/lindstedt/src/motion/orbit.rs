@@ -4,6 +4,7 @@ use super::Branch;
 use super::history::{Evaluator, Linear};
 use crate::refusal::Refused;
 use crate::{Error, Oscillator};
+use lindstedt_algebra::Stop;
 use lindstedt_equation::Crossing;
 use lindstedt_impact::flight::clearance;
 use lindstedt_impact::orbit::orbit;
@@ -49,7 +50,7 @@ impl Orbit {
         let p = parameters.certified(bits);
         let real = |x: &Certified| Float::with_val(bits, x.ball().midpoint());
         let orbit = orbit(&p)?;
-        if let Ok(Some(found)) = clearance(&p, &orbit)
+        if let Ok(Some(found)) = clearance(&p, &orbit, &Stop::default())
             && found.margin.is_positive()
         {
             let message = "no orbit: the flight passes through the wall";

@@ -9,6 +9,7 @@ mod point;
 mod reading;
 mod subject;
 
+use crate::choices::{Choice, VARIANTS};
 use crate::grid::{Axis, Part};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Work};
@@ -16,7 +17,7 @@ use lindstedt_impact::ImpactError;
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::parameters::Branch;
 use lindstedt_impact::prediction::Variant;
-use lindstedt_impact::report::{certified_stability_watched, stability_watched};
+use lindstedt_impact::report::{certified_stability, stability};
 use lindstedt_number::as_map;
 use lindstedt_number::real::Certified;
 use serde::Serialize;
@@ -107,11 +108,9 @@ impl Stability {
     /// The name of the variant.
     #[must_use]
     pub fn variant_name(&self) -> &'static str {
-        match self.variant {
-            _ if self.impact_aware => "impact-aware",
-            Variant::E => "E",
-            Variant::S => "S",
-            Variant::P => "P",
+        match self.impact_aware {
+            true => "impact-aware",
+            false => Choice::word(VARIANTS, (self.variant, false)),
         }
     }
 }
@@ -174,10 +173,10 @@ impl Oscillator {
         let request = subject.request();
         let mut value = if work.doubles {
             let point = parameters.nearest();
-            let report = stability_watched(&point, &request, &work.stop).map_err(stopped)?;
+            let report = stability(&point, &request, &work.stop).map_err(stopped)?;
             subject.answer(&report, &|x| Number::double(*x))
         } else {
-            let report = certified_stability_watched(parameters, &request, work.digits, &work.stop);
+            let report = certified_stability(parameters, &request, work.digits, &work.stop);
             let digits = work.printed_digits();
             let unknown = Cell::new(false);
             let number = |x: &Certified| {

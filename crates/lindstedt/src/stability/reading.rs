@@ -5,6 +5,7 @@ use super::point::{
     Aware, Found, Multiplier, Predicted, PredictedOrbit, ReturnMap, TrueOrbit, Truth,
 };
 use super::subject::Subject;
+use crate::choices::{Choice, KICKS};
 use crate::{Number, Remark, Status};
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::aware::AwarePrediction;
@@ -38,15 +39,6 @@ pub(super) fn stable(verdict: Verdict) -> Option<bool> {
         Verdict::Stable => Some(true),
         Verdict::Unstable => Some(false),
         Verdict::Neutral => None,
-    }
-}
-
-fn kick_name(kick: Kick) -> &'static str {
-    match kick {
-        Kick::None => "none",
-        Kick::Mean => "mean",
-        Kick::Before => "before",
-        Kick::After => "after",
     }
 }
 
@@ -142,7 +134,7 @@ impl<S: Real> Writer<'_, S> {
             complete_to_modulus: list.ok().map(|list| list.complete_to),
             multipliers_missing: list.err().map(ToString::to_string),
             zeros_in_unit_disc: found.zeros_in_unit_disc,
-            kick: Some(kick_name(growth.map_or(Kick::None, |_| subject.question.kick))),
+            kick: Some(Choice::word(KICKS, growth.map_or(Kick::None, |_| subject.question.kick))),
             return_map: growth.map(|growth| ReturnMap {
                 growth_per_impact: growth.rate,
                 spread: growth.spread,

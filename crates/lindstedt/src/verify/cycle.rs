@@ -2,7 +2,7 @@
 
 use crate::Error;
 use lindstedt_simulate::{
-    Digits, Integrator, Real, Report, Settings as Precision, System, monodromy,
+    Digits, Integrator, Places, Real, Report, Settings as Precision, System, go_on, monodromy,
 };
 use rug::Float;
 use std::ops::ControlFlow;
@@ -27,7 +27,7 @@ pub(super) fn cycle(
             return Ok(None);
         }
         let start = [a.clone(), zero.clone()];
-        let flow = monodromy(system, (&zero, &period), &start, precision)?;
+        let flow = monodromy(system, (&zero, &period), &start, precision, &go_on)?;
         let [x, v] = &flow.end[..] else { return Ok(None) };
         let [first, second] = &flow.matrix[..] else { return Ok(None) };
         // x''(0), at the solution x''(T).

@@ -1,5 +1,6 @@
 //! Averaged expansions against the time domain: x_N(t) by the truncated rates of a and psi.
 
+use super::resonant::in_time;
 use super::sampled::{largest_gaps, sample_times, states};
 use super::{Comparison, Verify};
 use crate::{Error, Oscillator, Progress};
@@ -11,7 +12,7 @@ use lindstedt_evaluation::averaged::Truncated;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
-    Digits, Integrator, Model, Parameters, Real, Report, Settings as Precision, System,
+    Digits, Integrator, Model, Parameters, Places, Real, Report, Settings as Precision, System,
 };
 use rug::ops::Pow;
 use rug::{Float, Rational};
@@ -135,20 +136,13 @@ impl Drifting {
             return Err(Error::LongDelay { delay });
         };
         let floor = Float::with_val(64, 2).pow(-i64::from(self.bits));
-        let in_time = |c: &[Float]| {
-            let mut rest = c.iter().enumerate().rev().skip_while(|(k, c)| {
+        let kept = |c: &[Float]| {
+            let small = |(k, c): &(usize, &Float)| {
                 Float::with_val(64, longest.pow(*k as u32)) * (*c).clone().abs() < floor
-            });
-            let number = |k: usize, c: &Float| {
-                let q = c.to_rational().unwrap_or_default();
-                Expression::Number(if k.is_multiple_of(2) { q } else { -q })
             };
-            let Some((k, c)) = rest.next() else { return Expression::integer(0) };
-            let horner =
-                |sum: Expression, (k, c): (usize, &Float)| Expression::Time * sum + number(k, c);
-            rest.fold(number(k, c), horner)
+            in_time(&c[..c.iter().enumerate().rev().skip_while(small).count()])
         };
-        Ok(Some(truncated.history(&[in_time(&a), in_time(&psi)])))
+        Ok(Some(truncated.history(&[kept(&a), kept(&psi)])))
     }
 
     /// x at the times.

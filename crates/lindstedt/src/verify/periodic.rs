@@ -9,7 +9,7 @@ use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::PhaseFunctions;
 use lindstedt_phase::lobachevsky_function::Point;
-use lindstedt_simulate::{Digits, Model, Parameters, Real, Settings as Precision};
+use lindstedt_simulate::{Digits, Model, Parameters, Places, Real, Settings as Precision};
 use rayon::prelude::*;
 use rug::{Float, Rational};
 

@@ -10,7 +10,7 @@ use lindstedt_equation::Expression;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
-    Digits, Integrator, Model, Parameters, Real, Report, Settings as Precision,
+    Digits, Integrator, Model, Parameters, Places, Real, Report, Settings as Precision,
 };
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ fn derivative(c: &[Float]) -> Vec<Float> {
 }
 
 /// A series in -t as a polynomial, by Horner's rule.
-fn in_time(c: &[Float]) -> Expression {
+pub(super) fn in_time(c: &[Float]) -> Expression {
     let number = |(k, c): (usize, &Float)| {
         let q = c.to_rational().unwrap_or_default();
         Expression::Number(if k.is_multiple_of(2) { q } else { -q })

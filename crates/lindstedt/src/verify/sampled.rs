@@ -4,7 +4,7 @@ use super::{Comparison, Verify};
 use crate::Error;
 use lindstedt_expand::ExpandError;
 use lindstedt_simulate::{
-    Digits, Integrator, Outcome, Real, Settings as Precision, System, Trajectory,
+    Digits, Integrator, Outcome, Places, Real, Settings as Precision, System, Trajectory,
 };
 use rug::{Float, Rational};
 use std::ops::ControlFlow;

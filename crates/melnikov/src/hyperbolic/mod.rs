@@ -100,21 +100,6 @@ impl HyperbolicRing {
         }
         result
     }
-    /// a^n.
-    #[must_use]
-    pub fn power(self, a: &Hyperbolic, n: u32) -> Hyperbolic {
-        let (mut result, mut square, mut n) = (self.one(), a.clone(), n);
-        while n > 0 {
-            if n & 1 == 1 {
-                result = self.mul(&result, &square);
-            }
-            n >>= 1;
-            if n > 0 {
-                square = self.mul(&square, &square);
-            }
-        }
-        result
-    }
 }
 
 impl Ring for HyperbolicRing {

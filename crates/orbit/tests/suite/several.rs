@@ -2,6 +2,7 @@
 
 use crate::common::{cosine, digits, q};
 use lindstedt_equation::Expression;
+use lindstedt_number::ball::Balls;
 use lindstedt_orbit::{
     Failure, Field, Kind, Proof, Request, Stability, guesses_all, prove_all, prove_each,
 };
@@ -59,7 +60,8 @@ fn closes(rests: &[Expression], proof: &Proof) {
     let real = Digits::for_digits(40);
     let model = Model::first_order(&names, &right_sides).unwrap();
     let system = model.compile(real, &Parameters::new()).unwrap();
-    let states: Vec<_> = (0..n).map(|k| proof.unknown_at(k, &Rational::new()).unwrap()).collect();
+    let states: Vec<_> =
+        (0..n).map(|k| proof.unknown_at_phase(k, &Balls::new(BITS).zero()).unwrap()).collect();
     let start: Vec<Float> = states
         .iter()
         .map(|(x, _)| x)

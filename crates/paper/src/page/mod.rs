@@ -12,7 +12,8 @@ use lindstedt_report::{Document, FigureError, Format, Text as Line, standalone};
 use serde::Serialize;
 
 pub use data::{PAGE, files};
-pub(crate) use notation::latex;
+#[doc(hidden)]
+pub use {data::numeric, notation::latex, summary::numbers};
 
 /// The width of the page as text.
 const WIDTH: usize = 100;

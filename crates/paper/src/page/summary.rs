@@ -51,7 +51,7 @@ pub(super) fn anchor(section: &Section, row: &Row) -> String {
 const FORMULAS: u32 = 51;
 
 /// The numbers of the formulas that a label names.
-fn numbers(label: &str) -> Vec<u32> {
+pub fn numbers(label: &str) -> Vec<u32> {
     let number = |part: &str| part.split_once(')')?.0.parse().ok();
     label.split('(').skip(1).filter_map(number).filter(|n| *n <= FORMULAS).collect()
 }
@@ -93,17 +93,4 @@ pub(super) fn glance(paper: &Paper, linked: bool) -> Document {
         .words(format!("Every formula under the worst verdict of its parts{leads}."))
         .lines(lines)
         .table(table)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::numbers;
-
-    #[test]
-    fn numbers_of_labels() {
-        assert_eq!(numbers("b_2, (16)"), [16]);
-        assert_eq!(numbers("(26), 3"), [26]);
-        assert_eq!(numbers("L(2 pi)"), [2u32; 0]);
-        assert_eq!(numbers("a(t), psi(t), (7)"), [7]);
-    }
 }

@@ -15,6 +15,7 @@ mod prediction;
 mod setting;
 mod stability;
 
+pub use formula::{completions, parse};
 pub(super) use prediction::{ORBITS_READ, SAMPLED, unstable_example};
 pub use prediction::{Rate, Sample};
 

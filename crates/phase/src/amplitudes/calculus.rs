@@ -104,13 +104,13 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         AmplitudeElement { real: f.real, ..self.turned(&slope) }
     }
     fn by_time(&self, f: &Self::Element) -> Self::Element {
-        let rate = |word| Ok(self.turned(&self.rate(word)));
+        let mut rate = |word| Ok(self.turned(&self.rate(word)));
         // There is no error.
-        self.times_constants(f, f.real, rate).unwrap_or_else(|_| self.zero())
+        self.times_constants(f, f.real, &mut rate).unwrap_or_else(|_| self.zero())
     }
     fn shift(&self, f: &Self::Element, delay: usize) -> Option<Self::Element> {
-        let turn = |word| self.turn(delay, word).ok_or_else(|| self.undecided(word));
-        self.times_constants(f, f.real, turn).ok()
+        let mut turn = |word| self.turn(delay, word).ok_or_else(|| self.undecided(word));
+        self.times_constants(f, f.real, &mut turn).ok()
     }
     fn delay(&self, delay: usize) -> Option<Self::Element> {
         Some(self.delays.get(delay)?.time.clone())
@@ -124,16 +124,16 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         let resonances = self.resonances(j, g);
         let of = |word| resonances.get(&self.layout.lowest(word, self.moving())).copied().flatten();
         let resonant = self.filtered(g, |word| of(word) == Some(true));
-        let slope = |word| {
+        let mut slope = |word| {
             let slope = self.slope(linear, word).ok_or_else(|| self.undecided(word))?;
             self.reciprocal(&slope).ok_or_else(|| self.refusal(word, &slope))
         };
-        let flow = self.times_constants(&resonant, false, slope)?;
+        let flow = self.times_constants(&resonant, false, &mut slope)?;
         let mut rest = self.filtered(g, |word| of(word).is_none());
         rest.real = g.real;
         let free = linear.is_free(self);
         let mut nearest: Option<(Rational, Word, Rational)> = None;
-        let inverse = |word| {
+        let mut inverse = |word| {
             let Divisor { inverse, size } = match free {
                 true => self.divisor(j, word)?,
                 false => self.characteristic(linear, word)?,
@@ -150,7 +150,7 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
             }
             Ok(inverse)
         };
-        let response = self.times_constants(&rest, g.real, inverse)?;
+        let response = self.times_constants(&rest, g.real, &mut inverse)?;
         let nearest = nearest.map(|(_, word, size)| (self.harmonic_of(word), size));
         Ok(Split { flow, response, nearest })
     }
@@ -357,7 +357,7 @@ impl<S: Scalars> Amplitudes<S> {
         &self,
         f: &AmplitudeElement<S::Element>,
         real: bool,
-        mut constant: impl FnMut(Word) -> Result<AmplitudeElement<S::Element>, PhaseError>,
+        constant: &mut dyn FnMut(Word) -> Result<AmplitudeElement<S::Element>, PhaseError>,
     ) -> Result<AmplitudeElement<S::Element>, PhaseError> {
         let scalars = &self.scalars;
         let mut constants = Vec::new();

@@ -123,7 +123,7 @@ impl<S: Scalars> Amplitudes<S> {
 fn collected<N: Clone + PartialEq + Debug + Send + Sync>(
     mut powers: Powers<N>,
 ) -> AmplitudePolynomial<N> {
-    powers.sort_by_key(|(power, _)| *power);
+    powers.sort_unstable_by_key(|(power, _)| *power);
     AmplitudePolynomial::from_increasing(powers).unwrap_or_default()
 }
 

@@ -230,17 +230,3 @@ impl Figure {
         rows.fold(head, Table::row)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::colours::VERDICTS;
-
-    #[test]
-    fn verdicts_differ_in_lightness() {
-        // Rec. 601.
-        let mut all = VERDICTS
-            .map(|(r, g, b)| 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b));
-        all.sort_by(f64::total_cmp);
-        assert!(all.windows(2).all(|pair| pair[1] - pair[0] > 35.0), "{all:?}");
-    }
-}

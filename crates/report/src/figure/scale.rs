@@ -41,7 +41,7 @@ impl Scale {
 
 impl Axis {
     /// The word at a tick; none between two names.
-    pub(super) fn tick(&self, place: f64, range: &Range<f64>) -> String {
+    pub fn tick(&self, place: f64, range: &Range<f64>) -> String {
         if self.names.is_empty() {
             return self.scale.tick(place, range);
         }
@@ -51,7 +51,7 @@ impl Axis {
     }
 
     /// How many characters its widest word has.
-    pub(super) fn widest(&self, range: &Range<f64>) -> usize {
+    pub fn widest(&self, range: &Range<f64>) -> usize {
         let ends = [range.start, range.end].map(|place| self.tick(place, range));
         ends.iter().chain(&self.names).map(|word| word.chars().count()).max().unwrap_or(1)
     }
@@ -81,18 +81,4 @@ pub(super) fn range(places: impl Iterator<Item = f64>) -> Option<Range<f64>> {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     let margin = 0.04 * (high - low).max(1e-6 * high.abs()).max(1e-9);
     (low <= high && (high - low).is_finite()).then_some(low - margin..high + margin)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_stand_at_whole_places() {
-        let axis = Axis::named("rule", ["first", "second rule"]);
-        let words = [0.0, 1.0, 1.5, 2.0, 3.0].map(|place| axis.tick(place, &(0.9..2.1)));
-        assert_eq!(words, ["", "first", "", "second rule", ""]);
-        assert_eq!(axis.widest(&(0.9..2.1)), 11);
-        assert_eq!(Axis::linear("x").widest(&(0.0..10.0)), 2);
-    }
 }

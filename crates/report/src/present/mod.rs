@@ -30,6 +30,9 @@ use lindstedt::unstable::equation::{Condition, Problem, print};
 use lindstedt::{Header, Number, Status};
 use serde::Serialize;
 
+pub use respond::angle;
+pub use threshold::shade;
+
 /// `name = value` of the parameters.
 fn values(header: &Header) -> Vec<String> {
     header.at.iter().map(|(name, value)| format!("{name} = {value}")).collect()

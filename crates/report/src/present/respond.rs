@@ -201,7 +201,7 @@ fn plane(value: &Response, names: [&String; 2], absence: bool) -> Document {
 }
 
 /// k_1 eta_1 + k_2 eta_2 + ... from `k_1, k_2, ...`, of one phase k eta; as text and as LaTeX.
-fn angle(turns: &str) -> [String; 2] {
+pub fn angle(turns: &str) -> [String; 2] {
     let list: Vec<&str> = turns.split(", ").collect();
     let mut lines = [String::new(), String::new()];
     for (l, turn) in list.iter().enumerate().filter(|(_, turn)| **turn != "0") {
@@ -413,17 +413,4 @@ fn parts(points: &[Point]) -> Vec<(Option<bool>, &[Point])> {
     }
     parts.push((own, &points[first..]));
     parts
-}
-
-#[cfg(test)]
-mod tests {
-    use super::angle;
-
-    #[test]
-    fn signs_of_turns() {
-        let known = ["2 eta_1 - eta_2", r"2 \eta_1 - \eta_2"];
-        assert_eq!(angle("2, -1"), known);
-        let known = ["-(1/2) eta_2 + eta_3", r"-\frac{1}{2} \eta_2 + \eta_3"];
-        assert_eq!(angle("0, -1/2, 1"), known);
-    }
 }

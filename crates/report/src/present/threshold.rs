@@ -301,7 +301,7 @@ fn curves(sweep: &Sweep, header: &Header) -> Figure {
 
 /// The colour of a signed value over the largest: from dark vermilion, -1, through grey, 0, to light blue, 1, so that the
 /// lightness alone tells all of it; small values are spread.
-fn shade(share: f64) -> Colour {
+pub fn shade(share: f64) -> Colour {
     let depth = (share.abs().powf(0.4) * SHADES).round() / SHADES;
     let (r, g, b) = if share > 0.0 { LIGHT } else { DARK };
     let mix = |part: u8, end: u8| {
@@ -329,21 +329,4 @@ fn map(sweep: &Sweep, rows: &grid::Axis, header: &Header) -> Figure {
     let legend = legend.map(|(share, value)| (format!("{value:.3e}"), Some(self::shade(share))));
     let raster = Some(Raster { columns, rows, cells, legend: legend.into() });
     Figure { raster, ..Figure::new(title, across, up) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::shade;
-
-    /// Rec. 601: in print without colours the sign and the size are still told.
-    #[test]
-    fn the_lightness_of_a_shade_rises_with_the_value() {
-        let lightness = |n: i32| {
-            let (r, g, b) = shade(f64::from(n) / 20.0);
-            0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b)
-        };
-        let all: Vec<f64> = (-20..=20).map(lightness).collect();
-        assert!(all.windows(2).all(|pair| pair[0] < pair[1]), "{all:?}");
-        assert!(all[0] < 60.0 && (all[20] - 170.0).abs() < 1.0 && all[40] > 220.0, "{all:?}");
-    }
 }

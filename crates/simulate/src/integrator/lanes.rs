@@ -5,7 +5,7 @@
 //! bit by bit, whatever is in the other lanes. Who slides, rests or has a past takes his step alone.
 
 use super::arithmetic::Arithmetic;
-use super::real::{Doubles, Real};
+use super::real::{Doubles, Places, Real};
 use super::{Integrator, Next, Tick, Together};
 use crate::error::SimulateError;
 use crate::tape::{Moment, Rows, Tape};
@@ -31,26 +31,9 @@ fn add_product(sum: &mut Lane, a: &Lane, b: &Lane) {
     }
 }
 
-impl Arithmetic for Lanes {
+impl Places for Lanes {
     type Element = Lane;
-    type Mode = Lane;
 
-    #[inline(always)]
-    fn slides(&self, _: Lane) -> bool {
-        false
-    }
-    #[inline(always)]
-    fn leaps(&self, _: Lane) -> bool {
-        false
-    }
-    #[inline(always)]
-    fn times_sign(&self, to: &mut Lane, mode: Lane) {
-        self.scale(to, &mode);
-    }
-    #[inline(always)]
-    fn is_zero(&self, _: &Lane) -> bool {
-        false
-    }
     #[inline(always)]
     fn zero(&self) -> Lane {
         [0.0; LANES]
@@ -58,10 +41,6 @@ impl Arithmetic for Lanes {
     #[inline(always)]
     fn double(&self, x: f64) -> Lane {
         [x; LANES]
-    }
-    #[inline(always)]
-    fn negative(&self, a: &Lane) -> Lane {
-        a.map(|a| -a)
     }
     #[inline(always)]
     fn set(&self, to: &mut Lane, x: &Lane) {
@@ -145,15 +124,26 @@ impl Arithmetic for Lanes {
         let [a, b, c, d] = &sums;
         *to = each(|l| (a[l] + b[l]) + (c[l] + d[l]) + rest[l]);
     }
+}
+
+impl Arithmetic for Lanes {
+    type Mode = Lane;
+
     #[inline(always)]
-    fn convolve_derivative(&self, to: &mut Lane, scratch: &mut Lane, a: &[Lane], b: &[Lane]) {
-        self.set_zero(to);
-        let n = a.len().saturating_sub(1);
-        for (j, (x, y)) in (1i32..).zip(a.iter().skip(1).zip(b.iter().take(n).rev())) {
-            self.multiply(scratch, x, y);
-            self.times_integer(scratch, j);
-            self.increase(to, scratch);
-        }
+    fn slides(&self, _: Lane) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn leaps(&self, _: Lane) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn times_sign(&self, to: &mut Lane, mode: Lane) {
+        self.scale(to, &mode);
+    }
+    #[inline(always)]
+    fn is_zero(&self, _: &Lane) -> bool {
+        false
     }
 }
 

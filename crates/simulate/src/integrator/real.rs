@@ -10,38 +10,22 @@ use rug::float::Constant;
 use rug::{Float, Rational};
 use std::fmt::Debug;
 
-/// Arithmetic at one precision. Every operation is correctly rounded or, for sums of products,
-/// a chain of correctly rounded operations.
-pub trait Real: Clone + Debug + Send + Sync + Sized {
-    /// A number.
-    type Element: Clone + Debug + PartialEq + PartialOrd + Send + Sync;
+/// The operations of the recurrences: on the numbers of one integration, and on those of several side by side. They write
+/// to a place that exists already.
+pub trait Places {
+    /// A number, or one for each.
+    type Element: Clone + Debug;
 
-    /// The precision in bits.
-    fn bits(&self) -> u32;
     /// Zero.
     fn zero(&self) -> Self::Element;
     /// A number of 53 bits, rounded if the precision is less.
     fn double(&self, x: f64) -> Self::Element;
-    /// A rational, rounded to nearest.
-    fn rational(&self, q: &Rational) -> Self::Element;
-    /// A float of any precision, rounded to nearest.
-    fn float(&self, x: &Float) -> Self::Element;
-    /// The nearest f64.
-    fn to_f64(&self, x: &Self::Element) -> f64;
-    /// The number as a float of `bits()` bits; exact.
-    fn to_float(&self, x: &Self::Element) -> Float;
-    /// -1, 0 or 1; 0 for NaN.
-    fn sign(&self, x: &Self::Element) -> i8;
-    /// log2 |x| to about 1e-10, minus infinity at zero, NaN for what is not finite.
-    fn log2(&self, x: &Self::Element) -> f64;
-
-    /// [`Self::log2`] of the largest |x|; minus infinity of none, NaN where one of them is not finite.
-    fn log2_of_largest<'e>(&self, list: impl Iterator<Item = &'e Self::Element>) -> f64
-    where
-        Self::Element: 'e,
-    {
-        let larger = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
-        list.map(|x| self.log2(x)).fold(f64::NEG_INFINITY, larger)
+    /// -a.
+    #[inline(always)]
+    fn negative(&self, a: &Self::Element) -> Self::Element {
+        let mut to = a.clone();
+        self.times_integer(&mut to, -1);
+        to
     }
 
     /// to = x.
@@ -86,6 +70,7 @@ pub trait Real: Clone + Debug + Send + Sync + Sized {
     }
 
     /// to = sum_{j=1}^{n} j a_j b_{n-j}; `a` has n + 1 numbers, `b` at least n.
+    #[inline(always)]
     fn convolve_derivative(
         &self,
         to: &mut Self::Element,
@@ -100,6 +85,36 @@ pub trait Real: Clone + Debug + Send + Sync + Sized {
             self.times_integer(scratch, j);
             self.increase(to, scratch);
         }
+    }
+}
+
+/// Arithmetic at one precision. Every operation is correctly rounded or, for sums of products,
+/// a chain of correctly rounded operations.
+pub trait Real:
+    Places<Element: PartialEq + PartialOrd + Send + Sync> + Clone + Debug + Send + Sync + Sized
+{
+    /// The precision in bits.
+    fn bits(&self) -> u32;
+    /// A rational, rounded to nearest.
+    fn rational(&self, q: &Rational) -> Self::Element;
+    /// A float of any precision, rounded to nearest.
+    fn float(&self, x: &Float) -> Self::Element;
+    /// The nearest f64.
+    fn to_f64(&self, x: &Self::Element) -> f64;
+    /// The number as a float of `bits()` bits; exact.
+    fn to_float(&self, x: &Self::Element) -> Float;
+    /// -1, 0 or 1; 0 for NaN.
+    fn sign(&self, x: &Self::Element) -> i8;
+    /// log2 |x| to about 1e-10, minus infinity at zero, NaN for what is not finite.
+    fn log2(&self, x: &Self::Element) -> f64;
+
+    /// [`Self::log2`] of the largest |x|; minus infinity of none, NaN where one of them is not finite.
+    fn log2_of_largest<'e>(&self, list: impl Iterator<Item = &'e Self::Element>) -> f64
+    where
+        Self::Element: 'e,
+    {
+        let larger = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
+        list.map(|x| self.log2(x)).fold(f64::NEG_INFINITY, larger)
     }
 
     /// a + b.
@@ -124,12 +139,6 @@ pub trait Real: Clone + Debug + Send + Sync + Sized {
     fn quotient(&self, a: &Self::Element, b: &Self::Element) -> Self::Element {
         let mut to = self.zero();
         self.divide(&mut to, a, b);
-        to
-    }
-    /// -a.
-    fn negative(&self, a: &Self::Element) -> Self::Element {
-        let mut to = a.clone();
-        self.times_integer(&mut to, -1);
         to
     }
     /// |a|.
@@ -170,60 +179,14 @@ pub trait Real: Clone + Debug + Send + Sync + Sized {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Doubles;
 
-impl Real for Doubles {
+impl Places for Doubles {
     type Element = f64;
 
-    fn advance(
-        flow: &mut Integrator<'_, Self>,
-        target: &f64,
-        observer: &mut Observer<'_, Self>,
-    ) -> Result<Outcome, SimulateError> {
-        flow.advance_here(target, observer)
-    }
-    fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
-        flow.begin_here()
-    }
-    const LANES: usize = 8;
-    fn together(flows: &[&Integrator<'_, Self>]) -> Option<Box<dyn Together<Self>>> {
-        Integrator::side_by_side(flows)
-    }
-
-    fn bits(&self) -> u32 {
-        53
-    }
     fn zero(&self) -> f64 {
         0.0
     }
     fn double(&self, x: f64) -> f64 {
         x
-    }
-    fn rational(&self, q: &Rational) -> f64 {
-        // to_f64 of a rational truncates.
-        Float::with_val(53, q).to_f64()
-    }
-    fn float(&self, x: &Float) -> f64 {
-        x.to_f64()
-    }
-    fn to_f64(&self, x: &f64) -> f64 {
-        *x
-    }
-    fn to_float(&self, x: &f64) -> Float {
-        Float::with_val(53, *x)
-    }
-    #[inline]
-    fn sign(&self, x: &f64) -> i8 {
-        i8::from(*x > 0.0) - i8::from(*x < 0.0)
-    }
-    #[inline]
-    fn log2(&self, x: &f64) -> f64 {
-        if x.is_infinite() { f64::NAN } else { x.abs().log2() }
-    }
-    /// One logarithm.
-    #[inline]
-    fn log2_of_largest<'e>(&self, list: impl Iterator<Item = &'e f64>) -> f64 {
-        let larger =
-            |a: f64, b: &f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b.abs()) };
-        self.log2(&list.fold(0.0, larger))
     }
     #[inline]
     fn set(&self, to: &mut f64, x: &f64) {
@@ -301,6 +264,55 @@ impl Real for Doubles {
         let rest = left.remainder().iter().zip(right.remainder().iter().rev());
         let rest: f64 = rest.map(|(x, y)| x * y).sum();
         *to = (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest;
+    }
+}
+
+impl Real for Doubles {
+    fn advance(
+        flow: &mut Integrator<'_, Self>,
+        target: &f64,
+        observer: &mut Observer<'_, Self>,
+    ) -> Result<Outcome, SimulateError> {
+        flow.advance_here(target, observer)
+    }
+    fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
+        flow.begin_here()
+    }
+    const LANES: usize = 8;
+    fn together(flows: &[&Integrator<'_, Self>]) -> Option<Box<dyn Together<Self>>> {
+        Integrator::side_by_side(flows)
+    }
+
+    fn bits(&self) -> u32 {
+        53
+    }
+    fn rational(&self, q: &Rational) -> f64 {
+        // to_f64 of a rational truncates.
+        Float::with_val(53, q).to_f64()
+    }
+    fn float(&self, x: &Float) -> f64 {
+        x.to_f64()
+    }
+    fn to_f64(&self, x: &f64) -> f64 {
+        *x
+    }
+    fn to_float(&self, x: &f64) -> Float {
+        Float::with_val(53, *x)
+    }
+    #[inline]
+    fn sign(&self, x: &f64) -> i8 {
+        i8::from(*x > 0.0) - i8::from(*x < 0.0)
+    }
+    #[inline]
+    fn log2(&self, x: &f64) -> f64 {
+        if x.is_infinite() { f64::NAN } else { x.abs().log2() }
+    }
+    /// One logarithm.
+    #[inline]
+    fn log2_of_largest<'e>(&self, list: impl Iterator<Item = &'e f64>) -> f64 {
+        let larger =
+            |a: f64, b: &f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b.abs()) };
+        self.log2(&list.fold(0.0, larger))
     }
 }
 

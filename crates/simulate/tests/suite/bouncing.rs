@@ -5,7 +5,8 @@
 
 use lindstedt_equation::{Crossing, Expression, Impact};
 use lindstedt_simulate::{
-    Digits, Doubles, EventKind, Integrator, Model, Parameters, Real, Report, Settings, System,
+    Digits, Doubles, EventKind, Integrator, Model, Parameters, Places, Real, Report, Settings,
+    System,
 };
 use rug::float::Constant;
 use rug::{Float, Rational};

@@ -5,8 +5,8 @@
 
 use lindstedt_equation::{Crossing, Expression, Function, Impact};
 use lindstedt_simulate::{
-    Digits, Doubles, EventKind, Integrator, Model, Outcome, Parameters, Quantity, Real, Report,
-    Settings, SimulateError, Surface,
+    Digits, Doubles, EventKind, Integrator, Model, Outcome, Parameters, Places, Quantity, Real,
+    Report, Settings, SimulateError, Surface,
 };
 use rug::Rational;
 use std::ops::ControlFlow;

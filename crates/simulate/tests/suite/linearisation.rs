@@ -5,8 +5,8 @@
 
 use lindstedt_equation::{Crossing, Expression, Function, Impact};
 use lindstedt_simulate::{
-    Digits, Doubles, EventKind, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
-    SimulateError, System, monodromy,
+    Digits, Doubles, EventKind, Integrator, Model, Parameters, Places, Quantity, Real, Report,
+    Settings, SimulateError, System, go_on, monodromy,
 };
 use rug::{Float, Rational};
 use serde_json::Value;
@@ -45,7 +45,7 @@ fn multipliers_of_the_uncontrolled_impact_orbit() {
     flow.advance(&middle, &mut |_| ControlFlow::Continue(())).unwrap();
     let halfway = flow.state()[..2].to_vec();
     let end = real.float(&Float::with_val(200, &middle + &period));
-    let result = monodromy(&system, (&middle, &end), &halfway, settings).unwrap();
+    let result = monodromy(&system, (&middle, &end), &halfway, settings, &go_on).unwrap();
     let closing = Float::with_val(200, &result.end[0] - &halfway[0]).abs().to_f64();
     assert!(closing < 1e-25, "{closing:e}");
     let gamma = &data["stability_uncontrolled"]["gamma1"];
@@ -91,7 +91,7 @@ fn check_differences(
     let state = start.map(|x| real.double(x));
     let settings = Settings::for_digits(50);
     let times = (real.zero(), real.double(end));
-    let result = monodromy(&linear, (&times.0, &times.1), &state, settings).unwrap();
+    let result = monodromy(&linear, (&times.0, &times.1), &state, settings, &go_on).unwrap();
     let step = real.rational(&Quantity::parse("1e-16").unwrap().rational().unwrap());
     let (_, kinds) = end_of(&system, &state, end);
     for i in 0..2 {

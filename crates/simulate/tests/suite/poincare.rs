@@ -6,7 +6,7 @@ use crate::common::{parameters, stick_slip};
 use lindstedt_equation::{Crossing, Expression, Impact};
 use lindstedt_simulate::{
     Doubles, LyapunovSettings, Model, Parameters, PoincareMap, Section, Settings, SimulateError,
-    Surface, largest_lyapunov_exponent, largest_lyapunov_exponents,
+    Surface, go_on, largest_lyapunov_exponent, largest_lyapunov_exponents,
 };
 use rug::Rational;
 use std::f64::consts::PI;
@@ -31,7 +31,7 @@ fn impacts() {
     let settings = Settings::for_digits(16);
     let mut map = PoincareMap::new(&system, &0.0, &[1.0, 0.0], section, settings).unwrap();
     for n in 0..20 {
-        let point = map.next_point().unwrap().unwrap();
+        let point = map.next_point(&go_on).unwrap().unwrap();
         assert!((point.time - PI * (f64::from(n) + 0.5)).abs() < 1e-13);
         assert!((point.state[1] * f64::from(n + 1).exp2() - 1.0).abs() < 1e-12);
     }
@@ -43,9 +43,9 @@ fn patience_ends() {
     let section = Section::Events { surface: Surface::Wall(0), rising: None, patience: 1.0 };
     let settings = Settings::for_digits(16);
     let mut map = PoincareMap::new(&system, &0.0, &[1.0, 0.0], section, settings).unwrap();
-    assert_eq!(map.next_point(), Ok(None));
+    assert_eq!(map.next_point(&go_on), Ok(None));
     // The next call waits on from there.
-    assert!(map.next_point().unwrap().is_some());
+    assert!(map.next_point(&go_on).unwrap().is_some());
 }
 
 /// Entries into sticking and releases alternate; only at entries the point is stuck.
@@ -57,7 +57,7 @@ fn switchings_of_the_stick_slip_orbit() {
     let mut map = PoincareMap::new(&system, &0.0, &[0.11, 0.05], section, settings).unwrap();
     let (mut stuck, mut free) = (0, 0);
     for _ in 0..100 {
-        let point = map.next_point().unwrap().unwrap();
+        let point = map.next_point(&go_on).unwrap().unwrap();
         assert!((point.state[1] - 0.4).abs() < 1e-14);
         assert_eq!(point.modes, map.flow().modes());
         if point.stuck() { stuck += 1 } else { free += 1 }
@@ -113,7 +113,7 @@ fn impacts_at_the_ends_of_the_intervals() {
     let mut map =
         PoincareMap::new(&system, &0.0, &start, Section::Period(PI), integration).unwrap();
     for n in 1..=200 {
-        let point = map.next_point().unwrap().unwrap();
+        let point = map.next_point(&go_on).unwrap().unwrap();
         let size = point.state[1].abs() * f64::from(n).exp2();
         assert!(point.state[0].abs() * f64::from(n).exp2() < 1e-10 && size > 0.99 && size < 2.01);
     }
@@ -121,7 +121,7 @@ fn impacts_at_the_ends_of_the_intervals() {
     let section = Section::Strobe { first: PI / 2.0, period: PI };
     let mut map = PoincareMap::new(&system, &0.0, &start, section, integration).unwrap();
     for n in 0..200 {
-        let point = map.next_point().unwrap().unwrap();
+        let point = map.next_point(&go_on).unwrap().unwrap();
         assert!((point.time - (f64::from(n) + 0.5) * PI).abs() < 1e-12 * point.time);
         assert!((point.state[0] * f64::from(n).exp2() - 1.0).abs() < 1e-10);
     }

@@ -6,7 +6,7 @@
 use crate::common::{parameters, stick_slip};
 use lindstedt_simulate::{
     Doubles, Integrator, LyapunovExponent, LyapunovSettings, PoincareMap, Point, Report, Section,
-    Settings, System, largest_lyapunov_exponent, zero_one,
+    Settings, System, go_on, largest_lyapunov_exponent, zero_one,
 };
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -24,7 +24,7 @@ fn orbit(gamma: &str, transient: usize, kept: usize) -> Vec<Point<f64>> {
     let system = system(gamma, false);
     let settings = Settings::for_digits(16);
     let mut map = PoincareMap::new(&system, &0.0, &START, Section::Period(PI), settings).unwrap();
-    let mut next = || map.next_point().unwrap().unwrap();
+    let mut next = || map.next_point(&go_on).unwrap().unwrap();
     (0..transient).for_each(|_| drop(next()));
     (0..kept).map(|_| next()).collect()
 }
@@ -50,7 +50,7 @@ fn exponent(gamma: &str, averaged: u32) -> LyapunovExponent {
 fn growth(gamma: &str, count: usize, stride: usize) -> f64 {
     let x: Vec<f64> = orbit(gamma, 500, count).iter().map(|point| point.state[0]).collect();
     let x: Vec<f64> = x.into_iter().step_by(stride).collect();
-    zero_one(&x).unwrap().k
+    zero_one(&x, &go_on).unwrap().k
 }
 
 #[test]

@@ -8,7 +8,7 @@ use pieces::{LONG, Piece, divide, joined, number, sign, width, word};
 use tokens::{Kind, Token, tokens};
 
 /// A formula as LaTeX.
-pub(crate) fn latex(formula: &str) -> String {
+pub fn latex(formula: &str) -> String {
     let tokens = tokens(formula);
     let mut parser = Parser { tokens: &tokens, at: 0 };
     let mut latex = String::new();
@@ -225,98 +225,4 @@ impl<'a> Parser<'_, 'a> {
 /// A word with its own index alone.
 fn indexed((piece, index): (Piece, String)) -> Piece {
     Parser { tokens: &[], at: 0 }.scripts(piece, index)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::latex;
-    use crate::Text;
-    use lindstedt_report::{Format, mathml};
-
-    /// A marked line as HTML.
-    fn line(text: &str) -> String {
-        Format::Html.line(&Text::from(text).line())
-    }
-
-    /// The text of a line of HTML, without its tags.
-    fn bare(html: &str) -> String {
-        let after =
-            |part: &str| part.split_once('>').map_or(part.to_owned(), |(_, text)| text.to_owned());
-        html.split('<').map(after).collect()
-    }
-
-    fn formulas(text: &str) -> usize {
-        line(text).matches("<math>").count()
-    }
-
-    #[test]
-    fn words_stay_words() {
-        for text in [
-            "no change of one place makes it hold",
-            "neither sufficient (96 points are unstable) nor necessary",
-            "the engine's law, sliding in both directions; a minute",
-            "0-1 test of the series, 20000 polynomials",
-            "close to 0.65 a very slight chaotic behaviour",
-        ] {
-            assert_eq!(formulas(text), 0, "{}", line(text));
-            assert_eq!(bare(&line(text)), text);
-        }
-    }
-
-    #[test]
-    fn formulas_are_found() {
-        for (text, count) in [
-            ("$x'' + c x' + x + eps x^3 = 0$", 5),
-            ("exact, as polynomials in $x$, $x'$, $x(t-T)$", 3),
-            ("the printed root is imaginary for $omega > alpha$", 1),
-            ("$a = 1$ and b = 2", 1),
-        ] {
-            assert_eq!(formulas(text), count, "{}", line(text));
-        }
-        let html = line("a bound, $omega^2 = sin 1$, holds");
-        assert!(
-            html.starts_with("a bound, <span class=\"g\"><math>")
-                && html.ends_with("</span> holds"),
-            "{html}"
-        );
-        assert!(html.contains("<msup><mi>\u{3c9}</mi><mrow><mn>2</mn></mrow></msup>"), "{html}");
-    }
-
-    #[test]
-    fn structure() {
-        for (text, expected) in [
-            (
-                "D = C/sin(2*beta*lambda)*(exp(beta*c) - cos(2*beta*lambda))",
-                r"D=\frac{C}{\sin (2\,\beta \,\lambda )}\,(\exp (\beta \,c)-\cos (2\,\beta \,\lambda ))",
-            ),
-            ("b_0/b_2 < 1", r"\frac{b_{0}}{b_{2}}<1"),
-            ("v* = 0.4", r"v_{\ast }=0.4"),
-            ("R_r*v*sin(t)", r"R_{r}\,v\,\sin (t)"),
-            ("z(t)/gamma = 2 pi k/omega", r"\frac{z(t)}{\gamma }=\frac{2\,\pi \,k}{\omega }"),
-            ("dx'_+ = -R_r dx'_-", r"\delta x_{+}'=-R_{r}\,\delta x_{-}'"),
-            ("da/dt - dx/dt", r"\frac{da}{dt}-\frac{dx}{dt}"),
-            ("x = sqrt(2a/b)", r"x=\sqrt{\frac{2a}{b}}"),
-            ("S = 1 - 1/3! + x^2/(2k+1)!", r"S=1-\frac{1}{3!}+\frac{x^{2}}{(2k+1)!}"),
-            ("lambda = sqrt(alpha^2 - c^2/4)", r"\lambda =\sqrt{\alpha^{2}-\frac{c^{2}}{4}}"),
-            ("alpha0 x_0'' T_(l+1)", r"\alpha_{0}\,x_{0}''\,T_{l+1}"),
-            ("(a/b)^2 -> 6e-13", r"\left(\frac{a}{b}\right)^{2}\to 6\cdot 10^{-13}"),
-        ] {
-            assert_eq!(latex(text), expected, "{text}");
-        }
-    }
-
-    /// Everything that is read can be drawn, with elements closed in the order in which they were opened.
-    #[test]
-    fn elements_are_nested() {
-        for text in [
-            "z'' + alpha^2 z = eps f",
-            "sin phi = (-1/2*(R_r + 1)*[(R_r - 1)*cos(x) + R_r*exp(beta*c))/(F*omega)*v",
-            "((( x ]]] ^ _ / * < & > \" ''' -> ... +- a_{b",
-            "sum_{k>=1} (-1)^(k-1) sin(2kx)/k^2 - int_0^x ln|cos t| dt",
-            "int {gamma v0(t - t0) cos(omega t) - ...} dt",
-        ] {
-            let drawn = mathml(&latex(text), false);
-            assert!(drawn.is_ok(), "{text}: {drawn:?}");
-        }
-    }
 }

@@ -157,7 +157,7 @@ impl<E: Clone + PartialEq + Debug + Send + Sync> Unfolding<E> {
             }
         }
         let block = |(factor, mut terms): (Factor, Vec<(Word, F)>)| {
-            terms.sort_by(|(a, _), (b, _)| a.cmp(b));
+            terms.sort_unstable_by(|(a, _), (b, _)| a.cmp(b));
             Some((factor, Sparse::from_increasing(terms)?))
         };
         Some(LobachevskyElement { blocks: blocks.into_iter().map(block).collect::<Option<_>>()? })
