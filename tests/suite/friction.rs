@@ -21,7 +21,7 @@ fn shown(rate: &[RateTerm]) -> Vec<(i32, String)> {
         Coefficient::Number(number) | Coefficient::ClosedForm { number, .. } => {
             number.exact.clone().unwrap()
         }
-        Coefficient::Formula { text, .. } => text.clone(),
+        Coefficient::Formula(formula) => formula.text().to_owned(),
     };
     rate.iter().map(|term| (term.exponent, exact(term))).collect()
 }

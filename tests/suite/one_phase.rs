@@ -44,7 +44,7 @@ fn odd_laws_have_their_exact_rates() {
                 Coefficient::ClosedForm { number, .. } | Coefficient::Number(number) => {
                     value(number) * 1.3f64.powi(term.exponent)
                 }
-                Coefficient::Formula { text, .. } => panic!("{text}"),
+                Coefficient::Formula(formula) => panic!("{formula:?}"),
             };
             rate.iter().map(term).sum::<f64>()
         };

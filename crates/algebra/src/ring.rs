@@ -31,6 +31,11 @@ pub trait Ring: Sync {
     fn may_vanish(&self, a: &Self::Element) -> bool {
         self.is_zero(a)
     }
+    /// About how many coefficients of a word an element has: a product costs a few nanoseconds for every pair of them. What
+    /// costs less than waking another core stays where it is.
+    fn size(&self, _: &Self::Element) -> usize {
+        16
+    }
     /// a <- a + b.
     fn add_assign(&self, a: &mut Self::Element, b: &Self::Element);
     /// -a.
@@ -102,6 +107,9 @@ impl Ring for Rationals {
     }
     fn is_zero(&self, a: &Rational) -> bool {
         a.is_zero()
+    }
+    fn size(&self, a: &Rational) -> usize {
+        1 + (a.numer().significant_bits() + a.denom().significant_bits()) as usize / 64
     }
     fn add_assign(&self, a: &mut Rational, b: &Rational) {
         *a += b;

@@ -32,6 +32,9 @@ impl<R: Ring> Ring for Stopping<'_, R> {
     fn may_vanish(&self, a: &R::Element) -> bool {
         self.0.may_vanish(a)
     }
+    fn size(&self, a: &R::Element) -> usize {
+        self.0.size(a)
+    }
     fn add_assign(&self, a: &mut R::Element, b: &R::Element) {
         self.0.add_assign(a, b);
     }

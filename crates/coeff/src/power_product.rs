@@ -49,7 +49,7 @@ impl PowerProduct {
     }
 
     /// The product of powers of strictly increasing symbols; powers with exponent zero are left out.
-    pub(crate) fn increasing(factors: impl Iterator<Item = (Symbol, i16)>) -> Self {
+    pub fn increasing(factors: impl Iterator<Item = (Symbol, i16)>) -> Self {
         Self(factors.filter(|(_, exponent)| *exponent != 0).collect())
     }
 
@@ -58,8 +58,28 @@ impl PowerProduct {
         &self.0
     }
 
+    /// A number that is the larger, the larger the list of factors, compared one by one; `falling` compares higher powers
+    /// of a symbol as smaller ones. Of up to eight powers of parameters, the first 255, below the 128th.
+    pub fn rank(&self, falling: bool) -> Option<u128> {
+        let digit = |&(symbol, exponent): &(Symbol, i16)| {
+            let Symbol::Parameter(index) = symbol else { return None };
+            let exponent = if falling { -i32::from(exponent) } else { exponent.into() };
+            let power = u8::try_from(exponent + 128).ok()?;
+            let index = u8::try_from(index).ok()?.checked_add(1)?;
+            Some(u128::from(index) << 8 | u128::from(power))
+        };
+        // What is no factor ranks lowest.
+        let place =
+            |(i, factor): (usize, _)| Some(digit(factor)? << (112usize.checked_sub(16 * i)?));
+        self.0.iter().enumerate().map(place).try_fold(0, |sum, digit| Some(sum | digit?))
+    }
+
     /// The sum of weight times exponent.
     pub fn weight(&self) -> i64 {
+        // Parameters come first and weigh nothing.
+        if self.0.last().is_none_or(|(last, _)| matches!(last, Symbol::Parameter(_))) {
+            return 0;
+        }
         self.0.iter().map(|&(s, e)| i64::from(s.weight()) * i64::from(e)).sum()
     }
 }
@@ -110,5 +130,37 @@ impl Monomial for PowerProduct {
         product.extend_from_slice(&a[i..]);
         product.extend_from_slice(&b[j..]);
         Self(product)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cmp::Reverse;
+
+    /// Numbers in place of lists: the same order, falling powers, too.
+    #[test]
+    fn ranks_are_ordered_as_factors_are() {
+        let exponents = [-3, 0, 1, 2];
+        let mut all = Vec::new();
+        for (a, b, c) in exponents
+            .into_iter()
+            .flat_map(|a| exponents.into_iter().flat_map(move |b| exponents.map(|c| (a, b, c))))
+        {
+            let factors = [(0, a), (3, b), (254, c)].map(|(i, e)| (Symbol::Parameter(i), e));
+            all.push(PowerProduct::increasing(factors.into_iter()));
+        }
+        let falling = |m: &PowerProduct| m.0.iter().map(|(s, e)| (*s, Reverse(*e))).collect();
+        for m in &all {
+            for n in &all {
+                assert_eq!(m.rank(false).cmp(&n.rank(false)), m.cmp(n));
+                let [a, b]: [Vec<_>; 2] = [m, n].map(falling);
+                assert_eq!(m.rank(true).cmp(&n.rank(true)), a.cmp(&b));
+            }
+        }
+        let none = [(Symbol::Pi, 1), (Symbol::Parameter(255), 1), (Symbol::Parameter(0), 128)];
+        assert!(none.iter().all(|(s, e)| PowerProduct::power(*s, *e).rank(false).is_none()));
+        let nine = PowerProduct::increasing((0..9).map(|i| (Symbol::Parameter(i), 1)));
+        assert_eq!(nine.rank(false), None);
     }
 }

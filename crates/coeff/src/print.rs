@@ -18,12 +18,14 @@
 //! Text is read back by any computer algebra system that knows `*`, `/`, `^`, `ln`, `zeta`.
 
 use crate::polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};
+use crate::sparse::sort_by_rank;
 use lindstedt_algebra::{Rationals, Ring};
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::digits::decimal;
 use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 use std::cmp::{Ordering, Reverse};
+use std::fmt::Write;
 
 /// How to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -202,8 +204,7 @@ impl Print for PolynomialRing {
             let is_unit = *coefficient.denom() == 1 && *coefficient.numer().as_abs() == 1;
             let shown = monomial.factors().is_empty() || !is_unit;
             if shown {
-                let number = print_rational(coefficient, style);
-                line.push_str(number.trim_start_matches('-'));
+                write_magnitude(coefficient, style, &mut line);
             }
             self.write_factors(monomial, shown, (style, &mut written), &mut line);
         }
@@ -213,9 +214,15 @@ impl Print for PolynomialRing {
 
 /// The terms of a polynomial in the order of printing.
 fn in_order(a: &Polynomial) -> Vec<&(PowerProduct, Rational)> {
-    let mut terms: Vec<_> = a.terms().iter().map(|t| (weight_and_degree(&t.0), t)).collect();
-    terms.sort_by(|(k, (m, _)), (l, (n, _))| k.cmp(l).then_with(|| by_powers(m, n)));
-    terms.into_iter().map(|(_, term)| term).collect()
+    let mut terms: Vec<_> = a.terms().iter().collect();
+    sort_by_rank(
+        &mut terms,
+        |(m, _)| Some((weight_and_degree(m), m.rank(true)?)),
+        |(m, _), (n, _)| {
+            weight_and_degree(m).cmp(&weight_and_degree(n)).then_with(|| by_powers(m, n))
+        },
+    );
+    terms
 }
 
 /// Weight and degree in the parameters.
@@ -262,6 +269,9 @@ impl PolynomialRing {
     ) {
         let mut left = monomial.factors().len();
         for logarithms in [false, true] {
+            if left == 0 {
+                break;
+            }
             for &(symbol, exponent) in monomial.factors() {
                 let (last, power) = written.entry((symbol, exponent)).or_insert_with(|| {
                     (self.stands_last(symbol), self.power_of(symbol, exponent, style))
@@ -318,6 +328,21 @@ pub fn power(base: &str, exponent: i64, style: Style) -> String {
         (Style::Latex, _, Some(_)) => format!("({base})^{{{exponent}}}"),
         (Style::Latex, ..) => format!("{base}^{{{exponent}}}"),
     }
+}
+
+/// [`print_rational`] of the absolute value.
+fn write_magnitude(q: &Rational, style: Style, line: &mut String) {
+    let (Some(n), Some(d)) = (q.numer().to_i64(), q.denom().to_u64()) else {
+        line.push_str(print_rational(q, style).trim_start_matches('-'));
+        return;
+    };
+    let n = n.unsigned_abs();
+    // A string takes what is written.
+    let _ = match style {
+        _ if d == 1 => write!(line, "{n}"),
+        Style::Text => write!(line, "{n}/{d}"),
+        Style::Latex => write!(line, r"\frac{{{n}}}{{{d}}}"),
+    };
 }
 
 /// `-3/8`, in LaTeX `-\frac{3}{8}`; integers without denominator.

@@ -19,6 +19,19 @@ pub trait Monomial: Clone + Ord + Hash + Debug + Send + Sync {
     fn times(&self, other: &Self) -> Self;
 }
 
+/// Sorts by numbers, where all have one, and else as `compare` says.
+pub(crate) fn sort_by_rank<T, K: Ord>(
+    list: &mut [T],
+    rank: impl Fn(&T) -> Option<K>,
+    compare: impl Fn(&T, &T) -> Ordering,
+) {
+    if list.iter().all(|t| rank(t).is_some()) {
+        list.sort_by_cached_key(rank);
+    } else {
+        list.sort_by(compare);
+    }
+}
+
 /// A polynomial: monomials strictly increasing, coefficients nonzero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sparse<M, E> {
@@ -59,9 +72,23 @@ impl<M: Monomial, E: Clone + PartialEq + Debug + Send + Sync> Sparse<M, E> {
         increases.then_some(Self { terms })
     }
 
+    /// The polynomial with these terms, of different monomials, none of which is zero.
+    pub fn from_different(
+        mut terms: Vec<(M, E)>,
+        rank: impl Fn(&M) -> Option<u128>,
+    ) -> Option<Self> {
+        sort_by_rank(&mut terms, |(m, _)| rank(m), |(m, _), (n, _)| m.cmp(n));
+        Self::from_increasing(terms)
+    }
+
     /// The terms in increasing order of monomials.
     pub fn terms(&self) -> &[(M, E)] {
         &self.terms
+    }
+
+    /// The terms in increasing order of monomials.
+    pub fn into_terms(self) -> impl Iterator<Item = (M, E)> {
+        self.terms.into_iter()
     }
 
     /// Whether there is no term.

@@ -19,7 +19,7 @@ pub(crate) fn of(averaging: &Averaging, values: &BTreeMap<String, Exact>) -> Opt
             Some(Coefficient::Number(number) | Coefficient::ClosedForm { number, .. }) => {
                 number.decimal.parse().ok()
             }
-            Some(Coefficient::Formula { .. }) => None,
+            Some(Coefficient::Formula(_)) => None,
         };
         rates.iter().map(value).collect()
     };

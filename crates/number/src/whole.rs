@@ -84,9 +84,11 @@ impl Whole {
     /// self <- self + a b.
     #[inline]
     pub fn add_product(&mut self, a: &Self, b: &Self) {
-        if let (Word(sum), Word(a), Word(b)) = (&self.0, &a.0, &b.0) {
-            // |a b| <= 2^126.
-            *self = Self::from(i128::from(*a) * i128::from(*b) + i128::from(*sum));
+        if let (Word(sum), Word(a), Word(b)) = (&mut self.0, &a.0, &b.0)
+            && let Some(product) = a.checked_mul(*b)
+            && let Some(total) = sum.checked_add(product)
+        {
+            *sum = total;
             return;
         }
         self.add_long_product(a, b);
@@ -99,6 +101,7 @@ impl Whole {
             Long(n) => std::mem::take(&mut **n),
         };
         match (&a.0, &b.0) {
+            // |a b| <= 2^126.
             (Word(a), Word(b)) => sum += Integer::from(i128::from(*a) * i128::from(*b)),
             (Word(a), Long(b)) | (Long(b), Word(a)) => sum += &**b * *a,
             (Long(a), Long(b)) => sum += &**a * &**b,
@@ -180,11 +183,13 @@ impl From<i64> for Whole {
 impl From<i128> for Whole {
     #[inline]
     fn from(n: i128) -> Self {
-        match i64::try_from(n) {
-            Ok(n) => Self(Word(n)),
-            Err(_) => Self(Long(Box::new(Integer::from(n)))),
-        }
+        i64::try_from(n).map_or_else(|_| long(n), Self::from)
     }
+}
+
+#[inline(never)]
+fn long(n: i128) -> Whole {
+    Whole(Long(Box::new(Integer::from(n))))
 }
 
 impl From<Integer> for Whole {

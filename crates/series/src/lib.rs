@@ -12,6 +12,9 @@ use lindstedt_algebra::{RationalAlgebra, Ring};
 use rayon::prelude::*;
 use rug::Rational;
 
+/// Products of coefficients of a word that take no longer than waking other cores is worth: a millisecond.
+const ALONE: usize = 1 << 18;
+
 /// Coefficients from order 0; everything beyond the list is unknown, unless the series is a
 /// polynomial.
 ///
@@ -72,7 +75,7 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
     }
 
     /// self * other up to `order`, known as far as the factors and their valuations allow. The
-    /// coefficients are independent of each other and computed on all cores.
+    /// coefficients are independent of each other and, where they cost more than that, computed on all cores.
     #[must_use]
     pub fn mul<R: Ring<Element = E>>(&self, ring: &R, other: &Self, order: usize) -> Self {
         self.mul_from(ring, other, 0, order)
@@ -107,6 +110,10 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
             pairs.extend(range.filter_map(|k| Some((a.get(k)?, b.get(n - k)?))));
             ring.sum_of_products(&pairs)
         };
+        let size = |list: &[E]| -> usize { list.iter().map(|c| ring.size(c)).sum() };
+        if size(a).saturating_mul(size(b)) < ALONE {
+            return Self::truncated((0..length).map(coefficient).collect());
+        }
         // Late coefficients cost most: hand them out first.
         let mut coefficients: Vec<E> = (0..length).into_par_iter().rev().map(coefficient).collect();
         coefficients.reverse();
@@ -174,6 +181,23 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
         Some(Self::truncated(y))
     }
 
+    /// exp(self) for a series without a constant term,
+    ///
+    ///   n y_n = sum_{k=1}^n k x_k y_{n-k},   y = exp(x),
+    ///
+    /// from y' = x' y. Exact; O(N^2) products. Nothing unless the leading coefficient is zero.
+    pub fn exponential<R: RationalAlgebra<Element = E>>(&self, ring: &R) -> Option<Self> {
+        self.coefficients.first().filter(|c| ring.is_zero(c))?;
+        let weighted = self.coefficients.iter().enumerate();
+        let weighted: Vec<E> = weighted.map(|(k, x)| ring.scale(x, &Rational::from(k))).collect();
+        let mut y = vec![ring.one()];
+        for n in 1..weighted.len() {
+            let pairs: Vec<_> = weighted[1..=n].iter().zip(y.iter().rev()).collect();
+            y.push(ring.scale(&ring.sum_of_products(&pairs), &Rational::from((1, n))));
+        }
+        Some(Self::truncated(y))
+    }
+
     /// As [`Self::power`] as long as `go_on`, asked several times per order, says so; else nothing.
     pub fn power_while<R: RationalAlgebra<Element = E>>(
         &self,
@@ -229,6 +253,22 @@ mod tests {
         assert_eq!(inverse, x.power(&Rationals, &Rational::from(-1)));
         let quotient = root.divided_by(&Rationals, &x).map(|q| q.mul(&Rationals, &x, 5));
         assert_eq!(quotient, Some(root));
+    }
+
+    #[test]
+    fn exponentials_of_sums_are_products() {
+        let all = [&[(0, 1), (1, 1), (2, 3), (-1, 5)], &[(0, 1), (0, 1), (7, 2), (1, 9)]];
+        let [x, y] = all.map(|list| series(list));
+        let of = |x: &Series<Rational>| match x.exponential(&Rationals) {
+            Some(y) => y,
+            None => panic!("no constant term"),
+        };
+        assert_eq!(of(&x.add(&Rationals, &y)), of(&x).mul(&Rationals, &of(&y), 3));
+        assert_eq!(
+            of(&series(&[(0, 1), (2, 1), (0, 1), (0, 1)])),
+            series(&[(1, 1), (2, 1), (2, 1), (4, 3)])
+        );
+        assert_eq!(series(&[(1, 1), (2, 1)]).exponential(&Rationals), None);
     }
 
     #[test]

@@ -2,18 +2,21 @@
 
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
+use lindstedt_coeff::polynomial::Polynomial;
 use lindstedt_coeff::sparse::{Monomial, Sparse};
 use lindstedt_coeff::{PowerProduct, Symbol};
 use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay, Late};
-use rug::{Integer, Rational};
+use rug::Rational;
+use rustc_hash::FxHashMap;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 pub(super) type Element = AmplitudeElement<Whole>;
 
-/// A polynomial in cosines and sines.
-type Wave = Vec<(PowerProduct, Whole)>;
+/// A polynomial in cosines and sines, by the places of its monomials.
+type Wave = Vec<(usize, Whole)>;
 
 /// The terms of a polynomial, in any order.
 type Terms = Vec<(PowerProduct, Rational)>;
@@ -30,6 +33,7 @@ pub(super) struct Formulas<'a> {
     symbols: Vec<u16>,
     /// 1/(nu^2 - Omega^2), where the algebra divides by it.
     inverse: Option<ParameterFraction>,
+    waves: RefCell<Waves>,
 }
 
 impl<'a> Formulas<'a> {
@@ -59,7 +63,7 @@ impl<'a> Formulas<'a> {
             names.push(DIVISOR);
         }
         let algebra = Amplitudes::of_formulas(Integers, &names, field.pairs.len())?;
-        let mut formulas = Self { field, algebra, symbols, inverse };
+        let formulas = Self { field, algebra, symbols, inverse, waves: RefCell::default() };
         let rates = [Some(frequency), force].map(|rate| rate.map(|rate| formulas.element(rate)));
         let [frequency, force] = rates;
         let (frequency, force) = (frequency??, force.map_or(Some(None), |force| force.map(Some))?);
@@ -70,13 +74,11 @@ impl<'a> Formulas<'a> {
             Some(Late { time: formulas.element(&delay.time)?, turns })
         };
         let late = delays.iter().map(late).collect::<Option<Vec<_>>>()?;
-        let Self { algebra, inverse, .. } = formulas;
-        let mut algebra = algebra.with_rates(&frequency, force.as_ref()).with_late(late);
-        if let Some(omega) = omega.filter(|_| inverse.is_some()) {
+        let mut algebra = formulas.algebra.with_rates(&frequency, force.as_ref()).with_late(late);
+        if let Some(omega) = omega.filter(|_| formulas.inverse.is_some()) {
             algebra = algebra.with_divisor(name(&omega), DIVISOR)?;
         }
-        formulas = Self { field, algebra, symbols: formulas.symbols, inverse };
-        Some(formulas)
+        Some(Self { algebra, ..formulas })
     }
 
     /// The same with products that are broken off when `stop` says so.
@@ -123,46 +125,40 @@ impl<'a> Formulas<'a> {
     /// The real and the imaginary part of a constant as formulas.
     pub(super) fn read(&self, c: &Element) -> Option<[Option<ParameterFraction>; 2]> {
         let first = 3 + self.field.pairs.len();
-        let mut denominator = Integer::from(1);
-        let terms = self.algebra.terms_as(c, &|e: &Whole, _: &Integer| e.clone());
-        if let Some((_, [_, own])) = self.algebra.terms_as(c, &|_, d: &Integer| d.clone()).pop() {
-            denominator = own;
-        }
-        let mut waves: BTreeMap<&[i32], [Wave; 2]> = BTreeMap::new();
+        let (terms, denominator) = self.algebra.numerators(c);
+        let mut waves = self.waves.borrow_mut();
         // Re and Im by the power of 1/(nu^2 - Omega^2).
         let mut parts: BTreeMap<i32, [Terms; 2]> = BTreeMap::new();
-        // Words are sorted: what differs in the phases alone is side by side.
-        for group in terms.chunk_by(|(a, _), (b, _)| a[first..] == b[first..]) {
-            let mut sums: BTreeMap<PowerProduct, [Whole; 2]> = BTreeMap::new();
-            for (exponents, [re, im]) in group {
-                let turns = &exponents[3..first];
-                let wave = waves.entry(turns).or_insert_with(|| self.wave(turns));
-                // (re + i im)(cos + i sin).
-                let minus = im.neg();
-                for (part, c, wave) in
-                    [(0, re, &wave[0]), (0, &minus, &wave[1]), (1, re, &wave[1]), (1, im, &wave[0])]
-                {
-                    for (monomial, n) in wave.iter().filter(|_| !c.is_zero()) {
-                        let sum = match sums.get_mut(monomial) {
-                            Some(sum) => sum,
-                            None => sums.entry(monomial.clone()).or_insert([Whole::ZERO; 2]),
-                        };
-                        sum[part].add_product(c, n);
-                    }
+        // Of what differs in the phases alone, by the powers of cosines and sines: words are sorted.
+        let mut sums: Vec<[Whole; 2]> = Vec::new();
+        let mut terms = terms.peekable();
+        while let Some((exponents, [re, im])) = terms.next() {
+            let (turns, own) = exponents[3..].split_at(first - 3);
+            let [cos, sin] = waves.of(self, turns);
+            let length = [cos, sin].into_iter().flatten().map(|(place, _)| place + 1).max();
+            sums.resize(sums.len().max(length.unwrap_or(0)), [Whole::ZERO; 2]);
+            // (re + i im)(cos + i sin).
+            let minus = im.neg();
+            for (part, c, wave) in [(0, re, cos), (0, &minus, sin), (1, re, sin), (1, im, cos)] {
+                if !c.is_zero() {
+                    wave.iter().for_each(|(place, n)| sums[*place][part].add_product(c, n));
                 }
             }
-            let (own, divided) = group.first()?.0[first..].split_at_checked(self.symbols.len())?;
-            let factors = self.symbols.iter().zip(own).filter(|(_, e)| **e != 0);
+            if terms.peek().is_some_and(|(next, _)| next[first..] == *own) {
+                continue;
+            }
+            let (own, divided) = own.split_at_checked(self.symbols.len())?;
             let power = |(index, exponent): (&u16, &i32)| {
-                let exponent = i16::try_from(*exponent).ok()?;
-                Some(PowerProduct::power(Symbol::Parameter(*index), exponent))
+                Some((Symbol::Parameter(*index), i16::try_from(*exponent).ok()?))
             };
-            let powers = factors.map(power).collect::<Option<Vec<_>>>()?;
-            let monomial = powers.iter().fold(PowerProduct::unit(), |m, power| m.times(power));
-            let lists = parts.entry(divided.first().copied().unwrap_or(0)).or_default();
-            for (wave, sum) in sums {
+            let powers = self.symbols.iter().zip(own).map(power).collect::<Option<Vec<_>>>()?;
+            let monomial = PowerProduct::increasing(powers.into_iter());
+            let divided = if self.inverse.is_some() { divided.first().copied() } else { None };
+            let lists = parts.entry(divided.unwrap_or(0)).or_default();
+            for (wave, sum) in waves.monomials.iter().zip(&mut sums) {
                 for (list, c) in lists.iter_mut().zip(sum).filter(|(_, c)| !c.is_zero()) {
-                    list.push((wave.times(&monomial), c.over(&denominator)));
+                    list.push((wave.times(&monomial), c.over(denominator)));
+                    *c = Whole::ZERO;
                 }
             }
         }
@@ -174,9 +170,9 @@ impl<'a> Formulas<'a> {
         let field = self.field;
         let mut sums = [field.zero(), field.zero()];
         for (power, lists) in parts {
-            for (sum, mut list) in sums.iter_mut().zip(lists) {
-                list.sort_unstable_by(|(m, _), (n, _)| m.cmp(n));
-                let mut part = field.polynomial(Sparse::from_increasing(list)?);
+            for (sum, list) in sums.iter_mut().zip(lists) {
+                let polynomial = Sparse::from_different(list, |m| m.rank(false));
+                let mut part = field.polynomial(polynomial?);
                 let factor = match (power, &self.inverse) {
                     (0, _) => None,
                     (_, None) => return None,
@@ -186,14 +182,18 @@ impl<'a> Formulas<'a> {
                 for _ in 0..power.unsigned_abs() {
                     part = factor.as_ref().map_or(part.clone(), |factor| field.mul(&part, factor));
                 }
-                field.add_assign(sum, &part);
+                if field.is_zero(sum) {
+                    *sum = part;
+                } else {
+                    field.add_assign(sum, &part);
+                }
             }
         }
         Some(sums.map(|sum| (!field.is_zero(&sum)).then_some(sum)))
     }
 
     /// cos and sin of sum_j k_j theta_j in those of the theta_j.
-    fn wave(&self, multiples: &[i32]) -> [Wave; 2] {
+    fn wave(&self, multiples: &[i32]) -> [Polynomial; 2] {
         let ring = &self.field.ring;
         let mut wave = [ring.one(), ring.zero()];
         for (&(cos, sin), k) in self.field.pairs.iter().zip(multiples) {
@@ -209,8 +209,37 @@ impl<'a> Formulas<'a> {
                 wave = next.map(|p| self.field.polynomial(p).numerator().clone());
             }
         }
-        // Chebyshev's polynomials: the coefficients are integers.
-        let of = |(m, c): &(PowerProduct, Rational)| (m.clone(), Whole::from(c.numer()));
-        wave.map(|p| p.terms().iter().map(of).collect())
+        wave
+    }
+}
+
+/// Cosines and sines of sums of multiples of the theta_j, as they are asked for.
+#[derive(Default)]
+struct Waves {
+    /// The products of cos theta_j and sin theta_j that occur, and their places.
+    monomials: Vec<PowerProduct>,
+    places: FxHashMap<PowerProduct, usize>,
+    known: FxHashMap<Vec<i32>, [Wave; 2]>,
+}
+
+impl Waves {
+    fn of(&mut self, formulas: &Formulas<'_>, multiples: &[i32]) -> &[Wave; 2] {
+        if !self.known.contains_key(multiples) {
+            let wave = formulas.wave(multiples).map(|p| self.wave(&p));
+            self.known.insert(multiples.to_vec(), wave);
+        }
+        &self.known[multiples]
+    }
+
+    /// Chebyshev's polynomials: the coefficients are integers.
+    fn wave(&mut self, p: &Polynomial) -> Wave {
+        let term = |(m, c): &(PowerProduct, Rational)| {
+            let place = *self.places.entry(m.clone()).or_insert_with(|| {
+                self.monomials.push(m.clone());
+                self.monomials.len() - 1
+            });
+            (place, Whole::from(c.numer()))
+        };
+        p.terms().iter().map(term).collect()
     }
 }

@@ -7,7 +7,7 @@
 //! a value with their inverses: exact.
 
 use super::coefficients::Coefficients;
-use super::{Averaging, AveragingSettings, Coefficient, RateTerm, limit_memory};
+use super::{Averaging, AveragingSettings, Coefficient, Formula, RateTerm, limit_memory};
 use crate::error::DerivationError as Error;
 use crate::limits::{refuse_taken, unknown_parameter};
 use crate::work::Progress;
@@ -160,11 +160,12 @@ impl HalfTurnProblem {
     /// A formula, or a number in pi with its decimals.
     fn coefficient(&self, c: &Polynomial, digits: usize) -> Result<Coefficient, Error> {
         let ring = PolynomialRing { parameters: self.names.clone() };
-        let [text, latex] = [Style::Text, Style::Latex].map(|style| ring.print(c, style));
         let parameter = |&(symbol, _): &(Symbol, i16)| matches!(symbol, Symbol::Parameter(_));
         if c.terms().iter().any(|(m, _)| m.factors().iter().any(parameter)) {
-            return Ok(Coefficient::Formula { text, latex });
+            let c = c.clone();
+            return Ok(Coefficient::Formula(Formula::new(move |style| ring.print(&c, style))));
         }
+        let [text, latex] = [Style::Text, Style::Latex].map(|style| ring.print(c, style));
         let value = |balls: Balls| {
             let target = BallRing { balls };
             Some(ring.substitute(&target, c, |_| Enclosure(balls.pi()))?.0)

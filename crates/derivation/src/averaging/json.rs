@@ -12,8 +12,9 @@ impl Coefficient {
     fn number(&self) -> Printed<'_> {
         match self {
             Self::Number(number) | Self::ClosedForm { number, .. } => Printed::Number(number),
-            Self::Formula { text, .. } => {
-                Printed::Formula { exact: text, decimal: (), error: (), status: Status::Exact }
+            Self::Formula(formula) => {
+                let exact = formula.text();
+                Printed::Formula { exact, decimal: (), error: (), status: Status::Exact }
             }
         }
     }

@@ -18,11 +18,13 @@ use crate::limits::refuse_above;
 use crate::work::Progress;
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
+use lindstedt_coeff::print::Style;
 use lindstedt_equation::Problem;
 use lindstedt_equation::description::Description;
 use lindstedt_impact::convergence::Convergence;
 use lindstedt_number::{Exact, Number};
 use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
 use task::Task;
 pub(crate) use values::constant;
 
@@ -76,13 +78,43 @@ pub enum Coefficient {
         /// Its exact form as LaTeX.
         latex: String,
     },
-    /// A formula in the parameters that have no value, as text and as LaTeX.
-    Formula {
-        /// One line of text.
-        text: String,
-        /// LaTeX.
-        latex: String,
-    },
+    /// A formula in the parameters that have no value.
+    Formula(Formula),
+}
+
+/// A formula, written in the notation that is asked for: of a high order a megabyte each.
+#[derive(Clone)]
+pub struct Formula {
+    print: Arc<dyn Fn(Style) -> String + Send + Sync>,
+    text: OnceLock<String>,
+}
+
+impl Formula {
+    pub(crate) fn new(print: impl Fn(Style) -> String + Send + Sync + 'static) -> Self {
+        Self { print: Arc::new(print), text: OnceLock::new() }
+    }
+
+    /// One line of text.
+    pub fn text(&self) -> &str {
+        self.text.get_or_init(|| (self.print)(Style::Text))
+    }
+
+    /// LaTeX.
+    pub fn latex(&self) -> String {
+        (self.print)(Style::Latex)
+    }
+}
+
+impl std::fmt::Debug for Formula {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.text())
+    }
+}
+
+impl PartialEq for Formula {
+    fn eq(&self, other: &Self) -> bool {
+        self.text() == other.text()
+    }
 }
 
 /// An averaged problem, substituted into its equation:
@@ -169,8 +201,8 @@ impl Averaging {
 /// let settings = AveragingSettings { order: 1, ..AveragingSettings::default() };
 /// let result = average(&problem, &settings, &mut |_| true)?;
 /// // The paper's (7): da/dt = eps R a.
-/// let Coefficient::Formula { text, .. } = &result.amplitude_rate[1][0].coefficient else { panic!() };
-/// assert!(text.contains("1/2*alpha^(-1)*A*sin(alpha*T)"), "{text}");
+/// let Coefficient::Formula(formula) = &result.amplitude_rate[1][0].coefficient else { panic!() };
+/// assert!(formula.text().contains("1/2*alpha^(-1)*A*sin(alpha*T)"), "{formula:?}");
 /// # Ok::<(), lindstedt_derivation::DerivationError>(())
 /// ```
 pub fn average(

@@ -4,7 +4,7 @@ use super::coefficients::{Coefficients, with_angles};
 use super::cycles::cycles;
 use super::formulas::Formulas;
 use super::values::{Given, constant, enclosed};
-use super::{AveragedExpansion, Averaging, AveragingSettings, Coefficient, RateTerm};
+use super::{AveragedExpansion, Averaging, AveragingSettings, Coefficient, Formula, RateTerm};
 use crate::error::DerivationError as Error;
 use crate::limits::{check_delays, refuse_high_powers, refuse_taken, unknown_parameter};
 use crate::resonance::ResonanceError;
@@ -23,9 +23,9 @@ use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::rational;
 use lindstedt_phase::amplitudes::polar::{Polar, Read};
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay, scalars::Scalars};
-use rug::Rational;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 pub(super) struct Task<'a> {
     problem: &'a Problem,
@@ -308,29 +308,30 @@ impl<'a> Task<'a> {
 
     fn finish<K: RationalAlgebra>(
         &self,
-        over: &Over<K>,
+        over: Over<K>,
         exact: bool,
-        coefficient: &dyn Fn(&K::Element) -> Result<Coefficient, Error>,
+        coefficient: &dyn Fn(K::Element) -> Result<Coefficient, Error>,
     ) -> Result<Averaging, Error> {
-        let term = |(AmplitudePower(exponent), c): &(AmplitudePower, K::Element)| {
-            Ok(RateTerm { exponent: *exponent, coefficient: coefficient(c)? })
+        let order = over.expansion.order();
+        let term = |(AmplitudePower(exponent), c): (AmplitudePower, K::Element)| {
+            Ok(RateTerm { exponent, coefficient: coefficient(c)? })
         };
-        let rates = |list: &[AmplitudePolynomial<K::Element>]| {
-            let rate = |f: &AmplitudePolynomial<K::Element>| f.terms().iter().map(term).collect();
-            list.iter().map(rate).collect::<Result<Vec<Vec<_>>, Error>>()
+        let rates = |list: Vec<AmplitudePolynomial<K::Element>>| {
+            let rate = |f: AmplitudePolynomial<K::Element>| f.into_terms().map(term).collect();
+            list.into_iter().map(rate).collect::<Result<Vec<Vec<_>>, Error>>()
         };
-        let mut phase_rate = rates(&over.expansion.phase_rate)?;
+        let mut phase_rate = rates(over.expansion.phase_rate)?;
         if let Some(first) = phase_rate.first_mut() {
-            *first = vec![RateTerm { exponent: 0, coefficient: coefficient(&over.frequency)? }];
+            *first = vec![RateTerm { exponent: 0, coefficient: coefficient(over.frequency)? }];
         }
         Ok(Averaging {
             problem: self.problem.clone(),
-            order: over.expansion.order(),
+            order,
             checked_orders: over.checked_orders,
-            amplitude_rate: rates(&over.expansion.amplitude_rate)?,
+            amplitude_rate: rates(over.expansion.amplitude_rate)?,
             phase_rate,
-            solution: over.solution.clone(),
-            terms: over.terms.clone(),
+            solution: over.solution,
+            terms: over.terms,
             symbols: self.names.iter().filter(|n| self.value(n).is_none()).cloned().collect(),
             exact,
             cycles: None,
@@ -365,12 +366,12 @@ impl<'a> Task<'a> {
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Option<Averaging>, Error> {
         let Some(over) = self.over_rationals(observer)? else { return Ok(None) };
-        let number = |q: &Rational| Ok(Coefficient::Number(rational(q, self.settings.digits)?));
+        let number = |q| Ok(Coefficient::Number(rational(&q, self.settings.digits)?));
         let cycles = match self.settings.stop.asked() {
             true => None,
             false => cycles(&over.frequency, &over.expansion, self.settings.digits)?,
         };
-        Ok(Some(Averaging { cycles, ..self.finish(&over, true, &number)? }))
+        Ok(Some(Averaging { cycles, ..self.finish(over, true, &number)? }))
     }
 
     /// Over the field of the parameters without a value: in words where these have room.
@@ -455,14 +456,15 @@ impl<'a> Task<'a> {
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Averaging, Error> {
         let (field, over) = self.over_parameters(observer)?;
-        let formula = |c: &ParameterFraction| match field.as_rational(c) {
-            Some(q) => Ok(Coefficient::Number(rational(&q, self.settings.digits)?)),
-            None => Ok(Coefficient::Formula {
-                text: field.print(c, Style::Text),
-                latex: field.print(c, Style::Latex),
-            }),
+        let field = Arc::new(field);
+        let formula = |c: ParameterFraction| {
+            if let Some(q) = field.as_rational(&c) {
+                return Ok(Coefficient::Number(rational(&q, self.settings.digits)?));
+            }
+            let field = Arc::clone(&field);
+            Ok(Coefficient::Formula(Formula::new(move |style| field.print(&c, style))))
         };
-        self.finish(&over, true, &formula)
+        self.finish(over, true, &formula)
     }
 
     /// With enclosures.
@@ -489,7 +491,7 @@ impl<'a> Task<'a> {
             wanted + 40 + 8 * u32::try_from(self.settings.order).unwrap_or(u32::MAX / 16);
         loop {
             let over = self.over_balls(Balls::new(bits), observer)?;
-            let result = self.finish(&over, false, &|c| enclosed(&c.0, digits, bits));
+            let result = self.finish(over, false, &|c| enclosed(&c.0, digits, bits));
             match result {
                 Err(Error::NotEnoughBits { .. })
                     if bits < MOST_BITS && !self.settings.stop.asked() =>

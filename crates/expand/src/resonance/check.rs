@@ -6,8 +6,8 @@
 //! whole, where the derivation has D_0 as eigenvalues. A delayed value is exp(-T D) x in Horner's form,
 //! 1 - T D' (1 - T D'/2 (1 - ...)) with D' = D - D_0, followed by the shift of the phases, where the derivation builds the
 //! powers order by order. The delayed velocity is the velocity shifted so, where the derivation has the rate of change of
-//! the delayed value. Where D' z_j = mu_j z_j with constant mu_j, exp(-T D') multiplies z_j by exp(-T mu_j): Horner's form
-//! of that number, once for all values of the delay, where the derivation has the recurrence of its differential equation.
+//! the delayed value. Where D' z_j = mu_j z_j with constant mu_j, exp(-T D') multiplies z_j by exp(-T mu_j), the exponential
+//! of a series in full ([`Series::exponential`]; a test compares it with Horner's form), once for all values of the delay.
 //!
 //! Of one linear equation the same is one number, the characteristic function at lambda, and the response apart. That the equation
 //! is linear is read off the graph by the derivation's predicate ([`Affine`]); what it does with it is not shared.
@@ -202,7 +202,8 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         let x: Vec<_> = found.solution.iter().map(|x| Series::truncated(x.clone())).collect();
         let velocity: Vec<_> = x.iter().map(|x| self.rate(x)).collect();
         let sought = Series::truncated(found.parameter.clone());
-        let stretched: Vec<_> = (0..algebra.delays()).map(|delay| self.stretched(delay)).collect();
+        let stretched: Vec<_> =
+            (0..algebra.delays()).map(|delay| self.stretched(delay, self.order)).collect();
         let value = |node: &Node<_>| {
             if let &Node::Forcing(index) = node {
                 return Ok(Some(Series::polynomial(vec![equation.forcing[index].clone()])));
@@ -253,11 +254,12 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         found: &SlowFlow<A::Element>,
     ) -> Result<Option<Series<A::Element>>, ExpandError> {
         let algebra = self.algebra;
-        if Affine::of(algebra, equation, self.order).is_none() || !self.forces_stand() {
-            return Ok(None);
-        }
+        let affine = Affine::of(algebra, equation, self.order);
+        let Some(affine) = affine.filter(|_| self.forces_stand()) else { return Ok(None) };
         let Some(p) = self.response(found) else { return Ok(None) };
-        let Some(characteristic) = self.characteristic(equation)? else { return Ok(None) };
+        // A factor of order m leaves m orders of the delayed value unseen; series know how far they go.
+        let seen = |delay| self.order - affine.first(algebra, delay).unwrap_or(0).min(self.order);
+        let Some(characteristic) = self.characteristic(equation, &seen)? else { return Ok(None) };
         let z = algebra.amplitude(0);
         let free = characteristic.map(|c| algebra.twice_real(&algebra.mul(c, &z)));
         let rate = self.rate(&p);
@@ -275,16 +277,18 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         Ok(Some(free.add(algebra, &forced)))
     }
 
-    /// L, where z' is a multiple of z.
+    /// L, where z' is a multiple of z; of delayed values as many orders as are seen.
     fn characteristic(
         &self,
         equation: &Equation<A>,
+        seen: &dyn Fn(usize) -> usize,
     ) -> Result<Option<Series<A::Element>>, ExpandError> {
         let algebra = self.algebra;
         let z = algebra.amplitude(0);
         let late = |delay| {
             let turn = algebra.by_amplitude(&algebra.shift(&z, delay)?, 0);
-            Some(self.stretched(delay)?.first()?.map(|c| algebra.mul(c, &turn)))
+            let late = self.stretched(delay, seen(delay))?;
+            Some(late.first()?.map(|c| algebra.mul(c, &turn)))
         };
         let late: Option<Vec<_>> = (0..algebra.delays()).map(late).collect();
         let Some((late, lambda)) = late.zip(self.multiple(0, &self.whole[0][0])) else {
@@ -419,21 +423,17 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         Some(sum)
     }
 
-    /// exp(-T mu_j), if D' z_j = mu_j z_j with constants mu_j and D' does not turn the forces.
-    fn stretched(&self, delay: usize) -> Option<Vec<Series<A::Element>>> {
+    /// exp(-T mu_j) up to an order, if D' z_j = mu_j z_j with constants mu_j and D' does not turn the forces.
+    fn stretched(&self, delay: usize, order: usize) -> Option<Vec<Series<A::Element>>> {
         let algebra = self.algebra;
         if !self.forces_stand() {
             return None;
         }
         let time = algebra.neg(&algebra.delay(delay)?);
         let exponential = |(j, rate): (usize, &Series<A::Element>)| {
-            let back = self.multiple(j, rate)?.map(|c| algebra.mul(c, &time));
-            let one = Series::polynomial(vec![algebra.one()]);
-            let step = |sum: Series<_>, i: usize| {
-                let change = back.mul(algebra, &sum, self.order + 1 - i);
-                one.add(algebra, &change.map(|c| algebra.scale(c, &Rational::from((1, i)))))
-            };
-            Some((1..=self.order).rev().fold(one.clone(), step))
+            let mut back = self.multiple(j, rate)?.map(|c| algebra.mul(c, &time));
+            back.coefficients.truncate(order + 1);
+            back.exponential(algebra)
         };
         self.slow[0].iter().enumerate().map(exponential).collect()
     }
@@ -508,7 +508,7 @@ mod tests {
         };
         let linear = found(Expression::integer(0));
         let judge = Judge::new(&algebra, &linear);
-        let late = judge.stretched(0).unwrap();
+        let late = judge.stretched(0, order).unwrap();
         let x = Series::truncated(linear.solution[0].clone());
         for f in [judge.rate(&x), x.clone()] {
             let times = judge.times(&f, &late).unwrap();
@@ -522,10 +522,10 @@ mod tests {
         let z = algebra.amplitude(0);
         for f in [algebra.conjugate(&z), algebra.mul(&z, &z), algebra.one()] {
             wrong.flow[0][2] = f;
-            assert!(Judge::new(&algebra, &wrong).stretched(0).is_none());
+            assert!(Judge::new(&algebra, &wrong).stretched(0, order).is_none());
         }
         wrong.flow[0][2] = algebra.zero();
         wrong.detuning = vec![vec![algebra.one()]];
-        assert!(Judge::new(&algebra, &wrong).stretched(0).is_none());
+        assert!(Judge::new(&algebra, &wrong).stretched(0, order).is_none());
     }
 }

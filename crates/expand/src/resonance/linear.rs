@@ -11,7 +11,8 @@
 //!
 //!   n G_n = -T sum_{k=1}^n k lambda_k G_{n-k}:
 //!
-//! order n costs O(n) products of constants and one division by L'(i nu); no function is differentiated. The
+//! order n costs O(n) products of constants and one division by L'(i nu); no function is differentiated. Where delays are
+//! in weak terms alone, G_n counts from order n + 1 on and is formed then. The
 //! general scheme derives the same, slower, and is its judge in the tests.
 
 use super::delayed::step_back;
@@ -21,6 +22,7 @@ use crate::compile::{Equation, Node};
 use crate::driver::Scheme;
 use lindstedt_algebra::{AmplitudeAlgebra, LinearPart, Ring, Split};
 use rug::Rational;
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
@@ -134,15 +136,26 @@ fn product<R: Ring>(ring: &R, a: &[R::Element], b: &[R::Element], order: usize) 
     product
 }
 
+impl<E> Affine<E> {
+    /// The lowest order of the factors of x(t - T) and its rate.
+    pub(super) fn first<R: Ring<Element = E>>(&self, ring: &R, delay: usize) -> Option<usize> {
+        let late = self.factors.iter().filter(|((own, _), _)| *own == Some(delay));
+        late.filter_map(|(_, list)| list.iter().position(|c| !ring.is_zero(c))).min()
+    }
+}
+
 /// The root and the response to the force, order by order.
 pub(super) struct Linear<'a, A: AmplitudeAlgebra> {
     algebra: &'a A,
     linear: LinearPart<A::Element>,
     equation: Affine<A::Element>,
-    /// lambda.
+    /// lambda_n and n lambda_n.
     root: Vec<A::Element>,
-    /// e^(-i nu T) and G for every delay.
-    delays: Vec<(A::Element, Vec<A::Element>)>,
+    weighted: Vec<A::Element>,
+    /// 1, the displacement.
+    one: [A::Element; 1],
+    /// Of every delay.
+    delays: Vec<Delayed<A::Element>>,
     flow: Vec<A::Element>,
     solution: Vec<A::Element>,
     /// p.
@@ -152,18 +165,35 @@ pub(super) struct Linear<'a, A: AmplitudeAlgebra> {
     products: Cell<u64>,
 }
 
+struct Delayed<E> {
+    /// e^(-i nu T).
+    turn: E,
+    /// G; of a delay in weak terms up to the order before.
+    late: Vec<E>,
+    /// Whether it enters at order 0.
+    strong: bool,
+}
+
+/// A product of a sum.
+type Product<'a, E> = (E, Cow<'a, E>);
+
 impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
     /// From order zero of the general scheme.
     pub(super) fn start(start: &Resonant<'a, A>, equation: Affine<A::Element>) -> Option<Self> {
         let algebra = start.algebra;
         let amplitude = algebra.amplitude(0);
         let factor = |f: &A::Element| algebra.by_amplitude(f, 0);
-        let delays = (0..algebra.delays())
-            .map(|delay| Some((factor(&algebra.shift(&amplitude, delay)?), vec![algebra.one()])));
+        let delays = (0..algebra.delays()).map(|delay| {
+            let turn = factor(&algebra.shift(&amplitude, delay)?);
+            let strong = equation.first(algebra, delay) == Some(0);
+            Some(Delayed { turn, late: vec![algebra.one()], strong })
+        });
         let solution = start.x.first()?.clone();
         let free = algebra.twice_real(&amplitude);
         Some(Self {
             root: vec![factor(&algebra.by_time(&amplitude))],
+            weighted: vec![algebra.zero()],
+            one: [algebra.one()],
             delays: delays.collect::<Option<_>>()?,
             linear: start.linear.first()?.clone(),
             equation,
@@ -181,43 +211,40 @@ impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
         (self.flow, self.solution, self.nearest)
     }
 
-    /// sum_k a_k b_{n-k} over a range of k.
-    fn convolution(
-        &self,
-        a: &[A::Element],
-        b: &[A::Element],
-        range: std::ops::RangeInclusive<usize>,
-        n: usize,
-    ) -> A::Element {
-        let pairs: Vec<_> = range.filter_map(|k| Some((a.get(k)?, b.get(n - k)?))).collect();
+    /// sum_k a_k b_{n-k} as far as both are known.
+    fn convolution(&self, a: &[A::Element], b: &[A::Element], n: usize) -> A::Element {
+        let pair = |(k, a)| Some((a, b.get(n - k)?));
+        let pairs: Vec<_> = a.iter().take(n + 1).enumerate().filter_map(pair).collect();
         self.products.set(self.products.get() + pairs.len() as u64);
         self.algebra.sum_of_products(&pairs)
     }
 
     /// Order n of lambda^2 with lambda_n = 0, its products but the square once.
-    fn square(&self, n: usize) -> A::Element {
-        let twice = self.convolution(&self.root, &self.root, 1..=(n - 1) / 2, n);
-        let mut sum = self.algebra.scale(&twice, &Rational::from(2));
-        if n.is_multiple_of(2) {
-            let square = self.convolution(&self.root, &self.root, n / 2..=n / 2, n);
-            self.algebra.add_assign(&mut sum, &square);
-        }
-        sum
+    fn square(&self, n: usize) -> Vec<Product<'_, A::Element>> {
+        let (root, two) = (&self.root, Rational::from(2));
+        let twice = |k: usize| (self.algebra.scale(&root[k], &two), Cow::Borrowed(&root[n - k]));
+        let middle =
+            n.is_multiple_of(2).then(|| (root[n / 2].clone(), Cow::Borrowed(&root[n / 2])));
+        (1..n.div_ceil(2)).map(twice).chain(middle).collect()
     }
 
-    /// Order n of the factor of z that an unknown is.
-    fn value(&self, (delay, velocity): Unknown, n: usize) -> A::Element {
-        let one = [self.algebra.one()];
-        let (turn, late) = match delay {
-            Some(delay) => (&self.delays[delay].0, &self.delays[delay].1[..]),
-            None => (&one[0], &one[..]),
+    /// Order n of the factor of z that an unknown is, times a constant.
+    fn value(
+        &self,
+        (delay, velocity): Unknown,
+        factor: &A::Element,
+        n: usize,
+    ) -> Option<Product<'_, A::Element>> {
+        let Some(delay) = delay else {
+            let value = if velocity { self.root.get(n) } else { self.one.get(n) };
+            return Some((factor.clone(), Cow::Borrowed(value?)));
         };
-        let value = if velocity {
-            self.convolution(&self.root, late, 0..=n, n)
-        } else {
-            late.get(n).cloned().unwrap_or_else(|| self.algebra.zero())
+        let Delayed { turn, late, .. } = &self.delays[delay];
+        let value = match velocity {
+            true => Cow::Owned(self.convolution(&self.root, late, n)),
+            false => Cow::Borrowed(late.get(n)?),
         };
-        self.algebra.mul(turn, &value)
+        Some((self.algebra.mul(factor, turn), value))
     }
 
     /// D_0 and the shift of an unknown applied to p_n.
@@ -229,9 +256,7 @@ impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
 
     /// G_n from lambda_1, ..., lambda_n as far as they are known.
     fn late(&self, delay: usize, n: usize) -> Option<A::Element> {
-        let weighted = |k: usize| self.algebra.scale(&self.root[k], &Rational::from(k));
-        let weighted: Vec<_> = (0..self.root.len()).map(weighted).collect();
-        let sum = self.convolution(&weighted, &self.delays[delay].1, 1..=n, n);
+        let sum = self.convolution(&self.weighted, &self.delays[delay].late, n);
         Some(self.algebra.mul(&sum, &step_back(self.algebra, delay, n)?))
     }
 
@@ -241,19 +266,18 @@ impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
         let mut free = self.square(n);
         let mut forced = self.equation.source.get(n).cloned().unwrap_or_else(|| algebra.zero());
         for (&unknown, factors) in &self.equation.factors {
-            for (k, factor) in factors.iter().enumerate().take(n + 1) {
-                if algebra.is_zero(factor) {
-                    continue;
-                }
-                let value = self.value(unknown, n - k);
-                algebra.add_assign(&mut free, &algebra.mul(factor, &value));
+            let known = factors.iter().enumerate().take(n + 1);
+            for (k, factor) in known.filter(|(_, factor)| !algebra.is_zero(factor)) {
+                free.extend(self.value(unknown, factor, n - k));
                 if k > 0 {
                     let value = self.response(unknown, n - k)?;
                     algebra.add_assign(&mut forced, &algebra.mul(&value, factor));
                 }
             }
         }
-        Some([free, forced])
+        self.products.set(self.products.get() + free.len() as u64);
+        let free: Vec<_> = free.iter().map(|(a, b)| (a, &**b)).collect();
+        Some([algebra.sum_of_products(&free), forced])
     }
 }
 
@@ -270,8 +294,11 @@ impl<A: AmplitudeAlgebra> Scheme for Linear<'_, A> {
         let algebra = self.algebra;
         let broken = ExpandError::NotWeaklyNonlinear;
         for delay in 0..self.delays.len() {
-            let late = self.late(delay, n).ok_or(broken.clone())?;
-            self.delays[delay].1.push(late);
+            let order = if self.delays[delay].strong { n } else { n - 1 };
+            if order > 0 {
+                let late = self.late(delay, order).ok_or(broken.clone())?;
+                self.delays[delay].late.push(late);
+            }
         }
         let [free, forced] = self.rest(n).ok_or(broken.clone())?;
         let free = algebra.twice_real(&algebra.mul(&free, &algebra.amplitude(0)));
@@ -284,10 +311,11 @@ impl<A: AmplitudeAlgebra> Scheme for Linear<'_, A> {
         let near = |(harmonic, size)| Nearest { order: n, unknown: 0, harmonic, size };
         self.nearest.extend(nearest.map(near));
         let root = algebra.by_amplitude(&flow, 0);
-        for (delay, (_, late)) in self.delays.iter_mut().enumerate() {
+        for (delay, own) in self.delays.iter_mut().enumerate().filter(|(_, own)| own.strong) {
             let step = step_back(algebra, delay, 1).ok_or(broken.clone())?;
-            algebra.add_assign(&mut late[n], &algebra.mul(&root, &step));
+            algebra.add_assign(&mut own.late[n], &algebra.mul(&root, &step));
         }
+        self.weighted.push(algebra.scale(&root, &Rational::from(n)));
         self.root.push(root);
         self.flow.push(flow);
         self.solution.push(response.clone());

@@ -35,6 +35,35 @@ impl<S: Scalars> Amplitudes<S> {
         self.summed(sums, real)
     }
 
+    /// The same of single terms whose products have one word, as constants have: nothing is gathered.
+    pub(super) fn of_one_word(
+        &self,
+        pairs: &[Pair<'_, S::Element>],
+        real: bool,
+    ) -> Option<AmplitudeElement<S::Element>> {
+        let mut products = Vec::with_capacity(pairs.len());
+        let mut word = None;
+        for (a, b) in pairs {
+            let ([(v, c)], [(w, d)]) = (&a.terms[..], &b.terms[..]) else { return None };
+            if *word.get_or_insert(v + w) != v + w {
+                return None;
+            }
+            products.push([c, d]);
+        }
+        let scalars = &self.scalars;
+        let minus: Vec<_> = products.iter().map(|[c, _]| scalars.neg(&c[1])).collect();
+        let mut lists = [Vec::new(), Vec::new()];
+        for ([[x, y], [u, v]], minus) in products.iter().zip(&minus) {
+            let all = [(0, x, u), (0, minus, v), (1, x, v), (1, y, u)];
+            let known = |(_, a, b): &(usize, &S::Element, &S::Element)| {
+                !scalars.is_zero(a) && !scalars.is_zero(b)
+            };
+            all.into_iter().filter(known).for_each(|(part, a, b)| lists[part].push((a, b)));
+        }
+        let sums = lists.map(|list| scalars.sum_of_products(&list));
+        Some(self.single(word?, sums, Integer::from(1), real))
+    }
+
     /// [`AmplitudeAlgebra::along`](lindstedt_algebra::AmplitudeAlgebra::along), of the monomials whose words are not below
     /// those of their conjugates: c z^p zbar^q changes at the rate c p f/z + c q fbar/zbar. The part h = h_1 + i h_2 of f/z
     /// that only turns and stretches z, monomials that are their own conjugates, brings c ((p + q) h_1 + i (p - q) h_2).

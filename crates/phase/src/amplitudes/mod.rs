@@ -20,6 +20,7 @@ mod gather;
 pub mod polar;
 mod ring;
 pub mod scalars;
+mod sums;
 #[cfg(test)]
 mod tests;
 pub mod words;
@@ -28,7 +29,7 @@ pub use delay::{Delay, Late};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use rug::{Integer, Rational};
 use scalars::Scalars;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use formulas::Divided;
 use words::{DIGITS, Layout, Word};
@@ -126,6 +127,8 @@ pub struct Amplitudes<S: Scalars> {
     refuses: bool,
     stop: Stop,
     overflow: AtomicBool,
+    /// The exponents, a bit each, that told words apart in the last sum of many products.
+    independent: AtomicU32,
 }
 
 impl<S: Scalars> Amplitudes<S> {
@@ -178,6 +181,7 @@ impl<S: Scalars> Amplitudes<S> {
             symbols: symbols.iter().map(|name| (*name).to_owned()).collect(),
             stop: Stop::default(),
             overflow: AtomicBool::new(false),
+            independent: AtomicU32::new(0),
         };
         let own = |(e, d)| algebra.single(0, [e, algebra.scalars.zero()], d, true);
         algebra.generators = generators.into_iter().map(own).collect();
@@ -275,6 +279,16 @@ impl<S: Scalars> Amplitudes<S> {
         };
         let read = |e: &S::Element, d: &Integer| self.scalars.quotient(e, d);
         self.terms_as(f, &read).into_iter().map(|(exponents, c)| term(exponents, c)).collect()
+    }
+
+    /// The exponents of the terms with the numerators of their coefficients, and the common denominator.
+    pub fn numerators<'a>(
+        &'a self,
+        f: &'a AmplitudeElement<S::Element>,
+    ) -> (impl Iterator<Item = ([i32; DIGITS], &'a [S::Element; 2])>, &'a Integer) {
+        let n = self.exponents();
+        let term = move |(word, c): &'a Term<S::Element>| (self.layout.exponents(*word, n).0, c);
+        (f.terms.iter().map(term), &f.denominator)
     }
 
     /// The exponents of the terms with what `read` makes of the real and the imaginary part e/d of their

@@ -1,65 +1,15 @@
 //! Sums and products.
 
-use super::words::Word;
+use super::sums::{FEW, MANY, Numbering, SPARSE, Sum, independent};
+use super::words::{DIGITS, Word};
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
 use rug::{Integer, Rational};
+use std::sync::atomic::Ordering::Relaxed;
 
 pub(super) type Terms<E> = Vec<Term<E>>;
 
 pub(super) type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
-
-/// Sums of products in progress: a list, and where words stand in it.
-struct Sum<E> {
-    /// One more than the place of a word, 0 where there is none, from where its hash leads: at least twice as many
-    /// slots as words, a power of two.
-    places: Vec<u32>,
-    terms: Terms<E>,
-}
-
-impl<E> Sum<E> {
-    fn new() -> Self {
-        Self { places: vec![0; 64], terms: Vec::new() }
-    }
-
-    /// The slot of a word: its own or an empty one.
-    fn slot(&self, word: Word) -> usize {
-        let mask = self.places.len() - 1;
-        let mut slot = home(word, self.places.len().ilog2());
-        loop {
-            match self.places[slot].checked_sub(1) {
-                Some(place) if self.terms[place as usize].0 != word => slot = (slot + 1) & mask,
-                _ => return slot,
-            }
-        }
-    }
-
-    /// The coefficient of a word, that of a new one from `zero`.
-    fn coefficient(&mut self, word: Word, zero: impl Fn() -> E) -> &mut [E; 2] {
-        let mut slot = self.slot(word);
-        if self.places[slot] == 0 {
-            if 2 * self.terms.len() >= self.places.len() {
-                self.places = vec![0; 4 * self.places.len()];
-                for place in 0..self.terms.len() {
-                    let slot = self.slot(self.terms[place].0);
-                    self.places[slot] = place as u32 + 1;
-                }
-                slot = self.slot(word);
-            }
-            self.terms.push((word, [zero(), zero()]));
-            self.places[slot] = self.terms.len() as u32;
-        }
-        &mut self.terms[self.places[slot] as usize - 1].1
-    }
-}
-
-/// Where a word is looked for first among 2^bits slots. Every bit of either half changes the top bits of the products,
-/// the highest bits of a half no others.
-pub(super) fn home(word: Word, bits: u32) -> usize {
-    let low = (word as u64).wrapping_mul(0xf135_7aea_2e62_a9c5);
-    let high = ((word >> 64) as u64).wrapping_mul(0xd6e8_feb8_6659_fd93);
-    ((low ^ high.rotate_left(32)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - bits)) as usize
-}
 
 impl<S: Scalars> Amplitudes<S> {
     pub(super) fn largest(&self, f: &AmplitudeElement<S::Element>) -> i32 {
@@ -74,42 +24,40 @@ impl<S: Scalars> Amplitudes<S> {
         f.terms.iter().all(|(word, _)| self.layout.is_small(*word))
     }
 
-    /// sum <- sum + n a b for terms a and a polynomial b.
-    fn accumulate(
+    /// sum <- sum + n a b for terms a and a polynomial b; nothing where two words have one number.
+    pub(super) fn accumulate(
         &self,
         sum: &mut Sum<S::Element>,
-        a: &[Term<S::Element>],
-        b: &[Term<S::Element>],
+        [a, b]: [&[Term<S::Element>]; 2],
         n: &Integer,
-    ) {
+    ) -> Option<()> {
         let scalars = &self.scalars;
-        for (i, (v, c)) in a.iter().enumerate() {
-            if i % 64 == 63 && self.stop.asked() {
-                return;
+        // The real and the imaginary parts, most of which vanish.
+        let mut parts = [Vec::with_capacity(b.len()), Vec::with_capacity(b.len())];
+        for (w, c) in b {
+            let number = sum.number(*w, false);
+            for (part, e) in parts.iter_mut().zip(c).filter(|(_, e)| !scalars.is_zero(e)) {
+                part.push((*w, number, e));
             }
-            let [re, im] = c.each_ref().map(|part| scalars.times(part, n));
-            let minus = scalars.neg(&im);
-            let parts = [&re, &im].map(|part| !scalars.is_zero(part));
-            for (w, [x, y]) in b {
-                let [real, imaginary] = sum.coefficient(v + w, || scalars.zero());
-                if !scalars.is_zero(x) {
-                    if parts[0] {
-                        scalars.add_product(real, &re, x);
-                    }
-                    if parts[1] {
-                        scalars.add_product(imaginary, &im, x);
-                    }
-                }
-                if !scalars.is_zero(y) {
-                    if parts[0] {
-                        scalars.add_product(imaginary, &re, y);
-                    }
-                    if parts[1] {
-                        scalars.add_product(real, &minus, y);
+        }
+        for (k, (v, c)) in a.iter().enumerate() {
+            if k % 64 == 63 && self.stop.asked() {
+                return Some(());
+            }
+            let first = sum.number(*v, true);
+            for (i, c) in c.iter().enumerate().filter(|(_, e)| !scalars.is_zero(e)) {
+                let c = scalars.times(c, n);
+                for (j, list) in parts.iter().enumerate().filter(|(_, list)| !list.is_empty()) {
+                    let c = if i + j == 2 { &scalars.neg(&c) } else { &c };
+                    for (w, number, e) in list {
+                        let at = (v + w, first + number);
+                        let parts = sum.coefficient(at, || scalars.zero())?;
+                        scalars.add_product(&mut parts[i ^ j], c, e);
                     }
                 }
             }
         }
+        Some(())
     }
 
     /// The terms of a real polynomial whose words are above those of their conjugates, twice, and once
@@ -203,24 +151,30 @@ impl<S: Scalars> Amplitudes<S> {
         }
         if S::GATHERS {
             let pairs: Vec<_> = pairs().copied().collect();
-            return self.gathered(&pairs, real);
+            let product = self.of_one_word(&pairs, real);
+            return product.unwrap_or_else(|| self.gathered(&pairs, real));
         }
         let lcm = |d: Integer, (a, b): &Pair<'_, _>| {
             d.lcm(&Integer::from(&a.denominator * &b.denominator))
         };
         let mut denominator = pairs().fold(Integer::from(1), lcm);
-        let mut sum = Sum::new();
-        for (a, b) in pairs() {
-            let n = Integer::from(&denominator / &a.denominator) / &b.denominator;
-            let (short, long) = if a.terms.len() < b.terms.len() { (a, b) } else { (b, a) };
-            if real {
-                self.accumulate(&mut sum, &self.half(short), &long.terms, &n);
-            } else {
-                self.accumulate(&mut sum, &short.terms, &long.terms, &n);
+        let ordered: Vec<Pair<'_, _>> = pairs()
+            .map(|(a, b)| if a.terms.len() < b.terms.len() { (*a, *b) } else { (*b, *a) })
+            .collect();
+        let halves: Vec<_> = ordered.iter().filter(|_| real).map(|(a, _)| self.half(a)).collect();
+        let lists = ordered.iter().enumerate().map(|(i, (a, b))| {
+            let a = halves.get(i).unwrap_or(&a.terms);
+            [&a[..], &b.terms[..]]
+        });
+        let lists: Vec<_> = lists.collect();
+        let add = |mut sum: Sum<S::Element>| {
+            for ((a, b), lists) in ordered.iter().zip(&lists) {
+                let n = Integer::from(&denominator / &a.denominator) / &b.denominator;
+                self.accumulate(&mut sum, *lists, &n)?;
             }
-        }
-        let mut terms = sum.terms;
-        terms.sort_unstable_by_key(|(word, _)| *word);
+            Some(sum.sorted(|| self.scalars.zero()))
+        };
+        let mut terms = self.summed_up(&lists, &add);
         if real {
             let mut mirror = self.mirror(&terms);
             mirror.sort_unstable_by_key(|(word, _)| *word);
@@ -234,6 +188,29 @@ impl<S: Scalars> Amplitudes<S> {
             }
         }
         self.reduced(self.canonical(denominator, terms, real))
+    }
+
+    /// What `add` makes of a sum in which all words have numbers of their own.
+    fn summed_up(
+        &self,
+        lists: &[[&[Term<S::Element>]; 2]],
+        add: &dyn Fn(Sum<S::Element>) -> Option<Terms<S::Element>>,
+    ) -> Terms<S::Element> {
+        let products: usize = lists.iter().map(|[a, b]| a.len() * b.len()).sum();
+        let numbered = |independent: u32| {
+            let exponents = (0..DIGITS).filter(|i| independent >> i & 1 == 1);
+            add(Sum::numbered(Numbering::of(self.layout, lists, exponents, products)?))
+        };
+        // Mostly what the sum before had.
+        let known = self.independent.load(Relaxed);
+        let mut terms = if products < FEW || known == SPARSE { None } else { numbered(known) };
+        if terms.is_none() && known != SPARSE && products > MANY * lists.len() {
+            let new = independent(self.layout, self.exponents(), lists);
+            terms = if new == known { None } else { numbered(new) };
+            self.independent.store(if terms.is_some() { new } else { SPARSE }, Relaxed);
+        }
+        // Words that are hashed are never refused.
+        terms.or_else(|| add(Sum::hashed())).unwrap_or_default()
     }
 
     /// The product with a single term, which keeps the order of the words.
@@ -287,6 +264,9 @@ impl<S: Scalars> Ring for Amplitudes<S> {
     }
     fn is_zero(&self, f: &Self::Element) -> bool {
         f.terms.is_empty()
+    }
+    fn size(&self, f: &Self::Element) -> usize {
+        f.terms.len()
     }
     fn may_vanish(&self, f: &Self::Element) -> bool {
         f.terms.iter().flat_map(|(_, c)| c).all(|part| self.scalars.may_vanish(part))

@@ -195,9 +195,53 @@ fn words_that_differ_high_in_a_half_have_homes_of_their_own() {
         let word = |k: u32| {
             places.iter().zip([k / 32, k % 32]).fold(0, |w, (p, e)| w + (i128::from(e) << p))
         };
-        let mut homes: Vec<usize> = (0..1024).map(|k| ring::home(word(k), 11)).collect();
+        let mut homes: Vec<usize> = (0..1024).map(|k| sums::home(word(k), 11)).collect();
         homes.sort_unstable();
         homes.dedup();
         assert!(homes.len() > 500, "{places:?} {}", homes.len());
     }
+}
+
+/// (x^d + y z^(d-1) + ...) of all monomials of a degree: numbered by two exponents, as of the third power nothing is
+/// free. Numbered sums are hashed ones; words that relations of others do not tell apart are noticed.
+#[test]
+fn numbered_sums_are_hashed_sums() {
+    let Some(t) = Amplitudes::of_formulas(Integers, &["x", "y", "z"], 0) else { panic!("symbols") };
+    let symbols = ["x", "y", "z"].map(|name| t.symbol(name).unwrap_or_else(|| t.zero()));
+    let monomial = |exponents: [u32; 3]| {
+        let powers = symbols.iter().zip(exponents);
+        powers.fold(t.one(), |product, (symbol, e)| (0..e).fold(product, |p, _| t.mul(&p, symbol)))
+    };
+    let homogeneous = |degree: u32| {
+        let mut sum = t.zero();
+        for (i, j) in (0..=degree).flat_map(|i| (0..=degree - i).map(move |j| (i, j))) {
+            let n = Rational::from(7 * i + 3 * j + 1);
+            let term = t.scale(&monomial([i, j, degree - i - j]), &n);
+            t.add_assign(&mut sum, &if (i + j) % 2 == 0 { term } else { t.turned(&term) });
+        }
+        sum
+    };
+    let (f, g) = (homogeneous(9), homogeneous(10));
+    let lists = [[&f.terms[..], &g.terms[..]]];
+    let free = sums::independent(t.layout, t.exponents(), &lists);
+    assert_eq!(free.count_ones(), 2);
+    let of = |sum: sums::Sum<Whole>, lists: [&[Term<Whole>]; 2]| {
+        let mut sum = sum;
+        t.accumulate(&mut sum, lists, &Integer::from(3))?;
+        Some(sum.sorted(|| Whole::ZERO))
+    };
+    let numbered = |lists: [&[Term<Whole>]; 2]| {
+        let exponents = (0..words::DIGITS).filter(|i| free >> i & 1 == 1);
+        let numbering = sums::Numbering::of(t.layout, &[lists], exponents, 1 << 20);
+        numbering.and_then(|numbering| of(sums::Sum::numbered(numbering), lists))
+    };
+    assert!(numbered(lists[0]).is_some_and(|sum| sum.len() > 200));
+    assert_eq!(numbered(lists[0]), of(sums::Sum::hashed(), lists[0]));
+    // Of two degrees the same two exponents say too little.
+    let both = t.add(&f, &g);
+    assert_eq!(numbered([&both.terms, &g.terms]), None);
+    // The product itself: by evaluation of what is known, f g = g f with the factors the other way round, and twice.
+    assert_eq!(t.mul(&f, &g), t.mul(&g, &f));
+    assert_eq!(t.mul(&both, &g), t.add(&t.mul(&f, &g), &t.mul(&g, &g)));
+    assert_eq!(t.independent.load(Ordering::Relaxed).count_ones(), 3);
 }

@@ -6,6 +6,7 @@ use lindstedt::Answer;
 use lindstedt::averaging::{Averaging, Coefficient, Cycles, RateTerm, print_series};
 use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::equation::Condition;
+use std::borrow::Cow;
 
 /// Formulas longer than this are counted; JSON has them all.
 const PRINTED_CHARACTERS: usize = 6000;
@@ -146,22 +147,19 @@ fn residual(result: &Averaging) -> String {
 fn rate(terms: &[RateTerm], style: Style) -> String {
     let mut line = String::new();
     for term in terms {
-        let coefficient = match &term.coefficient {
-            Coefficient::Number(number) => {
-                number.exact.clone().unwrap_or_else(|| number.decimal.clone())
+        let coefficient: Cow<'_, str> = match &term.coefficient {
+            Coefficient::ClosedForm { latex, .. } if style == Style::Latex => latex.into(),
+            Coefficient::Number(number) | Coefficient::ClosedForm { number, .. } => {
+                number.exact.as_ref().unwrap_or(&number.decimal).into()
             }
-            Coefficient::ClosedForm { latex, .. } if style == Style::Latex => latex.clone(),
-            Coefficient::ClosedForm { number, .. } => number.exact.clone().unwrap_or_default(),
-            Coefficient::Formula { text, latex } => match style {
-                Style::Text => text.clone(),
-                Style::Latex => latex.clone(),
-            },
+            Coefficient::Formula(formula) if style == Style::Latex => formula.latex().into(),
+            Coefficient::Formula(formula) => formula.text().into(),
         };
         let is_sum = coefficient.trim_start_matches('-').contains([' ']);
         let name = (term.exponent != 0).then(|| power("a", term.exponent.into(), style));
         let (negative, magnitude) = match coefficient.strip_prefix('-') {
-            Some(rest) if !is_sum => (true, rest.to_owned()),
-            _ => (false, coefficient),
+            Some(rest) if !is_sum => (true, rest),
+            _ => (false, &*coefficient),
         };
         line += match (line.is_empty(), negative) {
             (true, false) => "",
@@ -171,7 +169,7 @@ fn rate(terms: &[RateTerm], style: Style) -> String {
         };
         let times = if style == Style::Text { "*" } else { "\\," };
         line += &match (name, is_sum) {
-            (None, _) => magnitude,
+            (None, _) => magnitude.to_owned(),
             (Some(name), _) if magnitude == "1" => name,
             (Some(name), true) => format!("{name}{times}({magnitude})"),
             (Some(name), false) => format!("{magnitude}{times}{name}"),

@@ -1,6 +1,6 @@
 //! A derivation as one would write it on the board, order by order.
 
-use super::{Present, classification, condition_text, equation};
+use super::{LATEX, Present, both, classification, condition_text, equation};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name};
 use lindstedt::unstable::equation::{AmplitudeRole, Condition, Quantity};
@@ -16,18 +16,14 @@ const RING_TEXT: &str = "l = -ln|cos(tau)|, Lambda_m = integral of l^m/m! - mu_m
 
 impl Present for Answer<Derivation> {
     fn document(&self) -> Document {
-        Board { value: &self.value, latex: true }.page()
-    }
-
-    fn plain_document(&self) -> Document {
-        Board { value: &self.value, latex: false }.page()
+        Board { value: &self.value, latex: LATEX.get() }.page()
     }
 }
 
 /// A derivation with what is written of it.
 struct Board<'a> {
     value: &'a Derivation,
-    /// Whether formulas have a LaTeX form: their coefficients have millions of terms.
+    /// Whether formulas have a LaTeX form.
     latex: bool,
 }
 
@@ -54,12 +50,6 @@ impl Board<'_> {
         page.words(self.residual())
     }
 
-    /// A formula in the notations that are read.
-    fn both(&self, print: impl Fn(Style) -> String) -> Formula {
-        let latex = if self.latex { print(Style::Latex) } else { String::new() };
-        Formula::new(print(Style::Text), latex)
-    }
-
     fn small(&self, style: Style) -> String {
         let name = &self.value.problem.small;
         if style == Style::Latex { latex_name(name) } else { name.to_string() }
@@ -67,7 +57,7 @@ impl Board<'_> {
 
     /// tau = omega t, omega^2 = kappa (1 + W_1 eps + ...), x = x_0 + x_1 eps + ...
     fn ansatz(&self) -> Formula {
-        self.both(|style| {
+        both(|style| {
             let (small, kappa) = (self.small(style), self.value.ring_print(style));
             let (tau, omega, times, gap, dots) = match style {
                 Style::Text => ("tau", "omega", "*", "   ", "..."),
@@ -125,7 +115,7 @@ impl Board<'_> {
         } else {
             page = page.formula(self.right_side(n)).formula(self.secular(n));
             if result.condition == Condition::LimitCycle && n > 1 {
-                page = page.formula(self.both(|style| {
+                page = page.formula(both(|style| {
                     let (before, value) = (n - 1, result.amplitude_correction(n - 1, style));
                     match style {
                         Style::Text => format!(
@@ -139,7 +129,7 @@ impl Board<'_> {
                 }));
             }
         }
-        page.formula(self.both(|style| {
+        page.formula(both(|style| {
             let terms = result.terms(n);
             let solution = if terms > PRINTED_TERMS {
                 counted(terms, style)
@@ -161,7 +151,7 @@ impl Board<'_> {
             let found = value.print_right_side(n, [Style::Text], most);
             (found.map(|([text], terms)| (text, terms)), None)
         };
-        self.both(|style| {
+        both(|style| {
             let right_side = match (&printed, style) {
                 (None, _) => indexed("f", n, style),
                 (Some((_, 0)), _) => String::new(),
@@ -177,7 +167,7 @@ impl Board<'_> {
 
     /// The condition that leaves no secular term, and the W_n that it gives.
     fn secular(&self, n: usize) -> Formula {
-        self.both(|style| {
+        both(|style| {
             let w = indexed("W", n, style);
             let value = self.value.frequency_correction(n, style);
             let leading = self.value.amplitude_correction(0, style);
@@ -197,7 +187,7 @@ impl Board<'_> {
     /// The series, coefficient by coefficient.
     fn result(&self, mut page: Document) -> Document {
         let result = self.value;
-        let small = self.both(|style| self.small(style));
+        let small = both(|style| self.small(style));
         for (series, numbers) in result.series.iter().zip(&result.numbers) {
             let name = series.quantity.name().replace('_', " ");
             let line = Text::words(format!("{name} in powers of ")).formula(small.clone()).and(":");

@@ -29,6 +29,7 @@ use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::equation::{Condition, Problem, print};
 use lindstedt::{Header, Number, Status};
 use serde::Serialize;
+use std::cell::Cell;
 
 pub use respond::angle;
 pub use threshold::shade;
@@ -51,13 +52,21 @@ fn stability_word(stable: Option<bool>, open: &'static str) -> &'static str {
     stable.map_or(open, |stable| if stable { "stable" } else { "unstable" })
 }
 
+thread_local! {
+    /// Whether formulas have a LaTeX form: their coefficients may have millions of terms.
+    static LATEX: Cell<bool> = const { Cell::new(true) };
+}
+
 /// An answer that can be shown.
 pub trait Present {
     /// The page.
     fn document(&self) -> Document;
     /// The page for a reader of plain text alone: its formulas may lack the LaTeX form, which is then not printed.
     fn plain_document(&self) -> Document {
-        self.document()
+        LATEX.set(false);
+        let page = self.document();
+        LATEX.set(true);
+        page
     }
     /// The figure, where there is something to draw.
     fn figure(&self) -> Option<Figure> {
@@ -81,8 +90,7 @@ pub trait Present {
 /// # Errors
 /// Those of serde: never for the answers of this workspace, whose keys are strings.
 pub fn json<A: Serialize>(answer: &A) -> serde_json::Result<String> {
-    // By way of a value: its keys are sorted.
-    Ok(safe(serde_json::to_string_pretty(&serde_json::to_value(answer)?)?))
+    Ok(safe(serde_json::to_string_pretty(answer)?))
 }
 
 /// The same on one line.
@@ -101,7 +109,11 @@ pub fn json_line<A: Serialize + ?Sized>(answer: &A) -> serde_json::Result<String
 /// JSON in which every character that steers a terminal is an escape: serde leaves those above 0x1f.
 fn safe(mut json: String) -> String {
     // Of ASCII that is printed nothing does: a quarter of a gigabyte is looked through at the speed of memory.
-    if !json.bytes().all(|byte| byte == b'\n' || (b' '..=b'~').contains(&byte)) {
+    let shown = |byte: &u8| *byte == b'\n' || (b' '..=b'~').contains(byte);
+    let (words, rest) = json.as_bytes().as_chunks();
+    if !rest.iter().all(shown)
+        || !words.iter().all(|word| are_plain(*word) || word.iter().all(shown))
+    {
         let escaped = |c: char| match c {
             c if c != '\n' && steers(c) => format!("\\u{:04x}", u32::from(c)),
             c => c.into(),
@@ -110,6 +122,14 @@ fn safe(mut json: String) -> String {
     }
     json.push('\n');
     json
+}
+
+/// Whether all bytes are printed ASCII: none has the highest bit, none less 0x20 or plus 1 gets or loses it.
+fn are_plain(word: [u8; 8]) -> bool {
+    const ONES: u64 = u64::MAX / 0xff;
+    let word = u64::from_ne_bytes(word);
+    let low = word.wrapping_sub(0x20 * ONES);
+    (word | low | word.wrapping_add(ONES)) & (0x80 * ONES) == 0
 }
 
 impl Text {
@@ -131,9 +151,10 @@ fn parameter(header: &Header, name: &str) -> Axis {
     })
 }
 
-/// A formula from what prints it in either notation.
+/// A formula from what prints it in the notations that are read.
 fn both(print: impl Fn(Style) -> String) -> Formula {
-    Formula::new(print(Style::Text), print(Style::Latex))
+    let latex = if LATEX.get() { print(Style::Latex) } else { String::new() };
+    Formula::new(print(Style::Text), latex)
 }
 
 /// The equation of a problem.
