@@ -19,6 +19,6 @@ pub use phase::{
     Elementary, ForcedAlgebra, FunctionAlgebra, NEAR_MISS, PhaseAlgebra, PhaseError, Resolution,
     combination,
 };
-pub use ring::{RationalAlgebra, Rationals, Ring, power};
+pub use ring::{Products, RationalAlgebra, Rationals, Ring, power};
 pub use stop::Stop;
 pub use stopping::Stopping;

@@ -26,6 +26,13 @@ pub trait FunctionAlgebra: RationalAlgebra {
         }
         sum
     }
+    /// The linear combination of every list; see [`Ring::SUMS_AT_ONCE`].
+    fn linear_combinations(
+        &self,
+        lists: &[Vec<(&Self::Element, &Constant<Self>)>],
+    ) -> Vec<Self::Element> {
+        lists.iter().map(|terms| self.linear_combination(terms)).collect()
+    }
     /// The constant that f is, if it is one.
     fn as_constant(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// ln |f|, where it lies in the algebra (in the Lobachevsky ring: f = cos psi).

@@ -76,7 +76,20 @@ pub trait Ring: Sync {
         }
         sum
     }
+    /// Whether [`Self::sums_of_products`] of many sums that share their factors costs less than they do one by one.
+    const SUMS_AT_ONCE: bool = false;
+    /// Of every list the sum of its products, those of its second half twice.
+    fn sums_of_products(&self, lists: &[Products<'_, Self::Element>]) -> Vec<Self::Element> {
+        let sum = |[once, twice]: &Products<'_, Self::Element>| {
+            let twice = self.coefficient_of_square(twice, None);
+            self.add(&twice, &self.sum_of_products(once))
+        };
+        lists.iter().map(sum).collect()
+    }
 }
+
+/// Pairs whose products are summed, once and twice.
+pub type Products<'a, E> = [Vec<(&'a E, &'a E)>; 2];
 
 /// A ring that contains the rational numbers: q -> q 1 is injective, and `scale` by q is the product
 /// with its image. Laws: [`laws::rational_algebra`](crate::laws::rational_algebra).

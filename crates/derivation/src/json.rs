@@ -39,7 +39,7 @@ impl Serialize for Derivation {
             }
             // Two more judge what is lifted.
             Solution::FrequencyOnly { primes: Some(primes) } => {
-                ("multi-modular frequency, checked at phases", Some((*primes, primes + 2)))
+                ("multi-modular frequency, checked at values of eps", Some((*primes, primes + 2)))
             }
             Solution::FrequencyOnly { primes: None } => ("energy integral", None),
             Solution::Clock(_) | Solution::Lobachevsky(_) => {

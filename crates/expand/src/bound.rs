@@ -4,37 +4,56 @@ use crate::compile::{Equation, Node};
 use lindstedt_algebra::{PhaseAlgebra, Ring};
 use rug::{Integer, Rational};
 
-/// The degree of x_n for n = 0..=order, and of everything formed on the way to order + 1;
-/// nothing when the equation is not polynomial.
+/// The highest even and the highest odd harmonic, where there are such.
+pub type Degrees = [Option<usize>; 2];
+
+/// The degrees of a product.
+fn product(a: &Degrees, b: &Degrees) -> Degrees {
+    let of = |odd: usize| {
+        let pair = |i: usize| Some(a[i]? + b[(odd + i) % 2]?);
+        pair(0).max(pair(1))
+    };
+    [of(0), of(1)]
+}
+
+/// The larger ones.
+fn larger(a: Degrees, b: Degrees) -> Degrees {
+    [a[0].max(b[0]), a[1].max(b[1])]
+}
+
+/// The degrees of x_n for n = 0..=order, none below those of the order before, and the largest of everything formed on
+/// the way to order + 1; nothing when the equation is not polynomial.
 pub fn degrees<A: PhaseAlgebra>(
     equation: &Equation<A>,
     order: usize,
-) -> Option<(Vec<usize>, usize)> {
-    let mut of_nodes: Vec<Vec<Option<usize>>> = vec![Vec::new(); equation.nodes.len()];
-    let mut of_x: Vec<usize> = Vec::new();
+) -> Option<(Vec<Degrees>, usize)> {
+    let mut of_nodes: Vec<Vec<Degrees>> = vec![Vec::new(); equation.nodes.len()];
+    let mut of_x: Vec<Degrees> = Vec::new();
     let mut largest = 1;
     for n in 0..=order + 1 {
         // Twice: the first pass with x_n = 0 gives f_n, and so the degree of x_n.
         for pass in 0..2 {
             for (id, node) in equation.nodes.iter().enumerate() {
-                let degree = match node {
-                    Node::Constant(_) => (n == 0).then_some(0),
-                    Node::Small => (n == 1).then_some(0),
+                let degrees = match node {
+                    Node::Constant(_) => [(n == 0).then_some(0), None],
+                    Node::Small => [(n == 1).then_some(0), None],
                     // x' = sum omega_k dx_{n-k}/dpsi has the degree of the highest x_k.
-                    Node::Displacement | Node::Velocity => of_x.get(n).copied(),
-                    Node::Sum(terms) => terms.iter().filter_map(|(_, t)| of_nodes[*t][n]).max(),
-                    &Node::Product(a, b) => {
-                        (0..=n).filter_map(|k| Some(of_nodes[a][k]? + of_nodes[b][n - k]?)).max()
+                    Node::Displacement | Node::Velocity => of_x.get(n).copied().unwrap_or_default(),
+                    Node::Sum(terms) => {
+                        terms.iter().map(|(_, t)| of_nodes[*t][n]).fold([None; 2], larger)
                     }
+                    &Node::Product(a, b) => (0..=n)
+                        .map(|k| product(&of_nodes[a][k], &of_nodes[b][n - k]))
+                        .fold([None; 2], larger),
                     _ => return None,
                 };
                 of_nodes[id].truncate(n);
-                of_nodes[id].push(degree);
-                largest = largest.max(degree.unwrap_or(0));
+                of_nodes[id].push(degrees);
+                largest = degrees.into_iter().flatten().fold(largest, usize::max);
             }
             if pass == 0 {
-                let force = of_nodes[equation.root()][n].unwrap_or(0);
-                of_x.push(force.max(of_x.last().copied().unwrap_or(1)));
+                let force = of_nodes[equation.root()][n];
+                of_x.push(larger(force, of_x.last().copied().unwrap_or([None, Some(1)])));
             }
         }
     }

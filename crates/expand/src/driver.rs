@@ -11,7 +11,7 @@
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
-use crate::evaluator::Evaluator;
+use crate::evaluator::{Ahead, Evaluator};
 use crate::limit_cycle;
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::Condition;
@@ -241,7 +241,7 @@ pub(crate) struct Driver<'a, A: PhaseAlgebra> {
     inverse_amplitude: Constant<A>,
     pub(crate) frequency_squared: Vec<Constant<A>>,
     /// omega/sqrt(kappa); used only where the velocity occurs, and then kappa = 1.
-    frequency: Vec<Constant<A>>,
+    pub(crate) frequency: Vec<Constant<A>>,
     pub(crate) x: Vec<A::Element>,
     /// x_n' and x_n'' with respect to psi.
     slopes: Vec<A::Element>,
@@ -249,6 +249,24 @@ pub(crate) struct Driver<'a, A: PhaseAlgebra> {
     /// Whether coefficient n of a node depends on x_n.
     sensitive: Vec<bool>,
     limit_cycle: Option<LimitCycleResponse<A>>,
+    /// Whether x_n has no first harmonic but that of the amplitude of a limit cycle, in place of its values at zero.
+    pub(crate) by_first_harmonic: bool,
+    /// Of the inertia and the velocity.
+    ahead: [Ahead<A::Element>; 2],
+}
+
+/// A convolution of constants and functions.
+#[derive(Clone, Copy)]
+enum Combined {
+    /// W_k x_{n-k}''.
+    Inertia,
+    /// omega_k x_{n-k}'.
+    Velocity,
+}
+
+/// Whether c_k f_{order-k} is of orders that stay as they are; see [`Ahead::next`].
+fn is_settled(below: usize, order: usize, k: usize) -> bool {
+    k <= below && order - k < below
 }
 
 /// How order n reacts to a change of the amplitude of order n - 1.
@@ -296,7 +314,7 @@ impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
         // f_n - W_n x_0'' = f_n + W_n a_0 cos psi has no cos psi left:
         let secular = constants.mul(&split.cos_amplitude, &self.inverse_amplitude);
         let mut x = split.response;
-        if self.condition == Condition::FundamentalAmplitude {
+        if self.by_first_harmonic {
             let harmonic = algebra.first_harmonic(&x);
             self.go_on(n)?;
             let (c, s) = harmonic.map_err(phase)?;
@@ -315,6 +333,8 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     ) -> Result<Self, ExpandError> {
         let constants = algebra.constants();
         let mut evaluator = Evaluator::new(algebra, equation);
+        // The amplitude of the last order of a limit cycle needs one more.
+        evaluator.last = Some(request.order + 1);
         let amplitude = constants.rational(&request.leading_amplitude);
         let inverse_amplitude =
             constants.reciprocal(&amplitude).ok_or(ExpandError::NoLimitCycle)?;
@@ -360,6 +380,8 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             x: vec![x0],
             sensitive,
             limit_cycle: None,
+            by_first_harmonic: request.condition == Condition::FundamentalAmplitude,
+            ahead: [Ahead::new(), Ahead::new()],
         };
         driver.forget(1);
         Ok(driver)
@@ -399,8 +421,9 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     /// f_n.
     fn right_side(&mut self, n: usize) -> Result<A::Element, ExpandError> {
         let force = self.evaluator.coefficient(self.evaluator.equation.root(), n)?;
+        self.look_ahead(Combined::Inertia, n);
         let mut terms = vec![(&force, &self.inverse_stiffness)];
-        terms.extend(self.convolution(&self.frequency_squared[1..], &self.second_derivatives, n));
+        terms.extend(self.combined(Combined::Inertia, n));
         let f = self.algebra.linear_combination(&terms);
         Ok(self.algebra.neg(&f))
     }
@@ -447,21 +470,65 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     }
 
     /// [x']_n = sum_k omega_k dx_{n-k}/dpsi.
-    fn velocity(&self, n: usize) -> A::Element {
+    fn velocity(&mut self, n: usize) -> A::Element {
+        self.look_ahead(Combined::Velocity, n);
         let leading = [(&self.slopes[n], &self.frequency[0])];
-        let rest = self.convolution(&self.frequency[1..], &self.slopes, n);
+        let rest = self.combined(Combined::Velocity, n);
         let terms: Vec<_> = leading.into_iter().chain(rest).collect();
         self.algebra.linear_combination(&terms)
     }
 
-    /// The terms c_k f_{n-k}, k = 1..n, that do not vanish; c_1 is the first of the list.
+    /// The terms of a convolution, k = 1..n, those that were summed ahead as one.
+    fn combined(&self, which: Combined, n: usize) -> Vec<(&A::Element, &Constant<A>)> {
+        let ahead = &self.ahead[which as usize];
+        let below = ahead.below(n);
+        let mut terms = self.terms_of(which, n, |k| !is_settled(below, n, k));
+        let sum = ahead.sum(n);
+        // W_0 = 1.
+        terms.extend(sum.map(|sum| (sum, &self.frequency_squared[0])));
+        terms
+    }
+
+    /// Sums a convolution for order n and some after it, where many sums at once cost less than one by one.
+    fn look_ahead(&mut self, which: Combined, n: usize) {
+        let last = self.evaluator.last.filter(|_| A::SUMS_AT_ONCE);
+        let Some(next) = last.and_then(|last| self.ahead[which as usize].next(n, last)) else {
+            return;
+        };
+        let [coefficients, orders] = next.clone();
+        let list = |order| {
+            self.terms_of(which, order, |k| {
+                is_settled(coefficients.end, order, k) && !is_settled(coefficients.start, order, k)
+            })
+        };
+        let lists: Vec<_> = orders.map(list).collect();
+        let (algebra, sums) = (self.algebra, self.algebra.linear_combinations(&lists));
+        self.ahead[which as usize].take(next, sums, |sum, rest| algebra.add_assign(sum, rest));
+    }
+
+    fn terms_of(
+        &self,
+        which: Combined,
+        n: usize,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Vec<(&A::Element, &Constant<A>)> {
+        let (constants, f) = match which {
+            Combined::Inertia => (&self.frequency_squared, &self.second_derivatives),
+            Combined::Velocity => (&self.frequency, &self.slopes),
+        };
+        self.convolution(&constants[1..], f, n, wanted)
+    }
+
+    /// The terms c_k f_{n-k}, k = 1..n, that are wanted and do not vanish; c_1 is the first of the list.
     pub(crate) fn convolution<'b>(
         &self,
         constants: &'b [Constant<A>],
         f: &'b [A::Element],
         n: usize,
+        wanted: impl Fn(usize) -> bool,
     ) -> Vec<(&'b A::Element, &'b Constant<A>)> {
-        let nonzero = |(_, c): &(usize, &Constant<A>)| !self.algebra.constants().is_zero(c);
+        let nonzero =
+            |(k, c): &(usize, &Constant<A>)| wanted(*k) && !self.algebra.constants().is_zero(c);
         let terms = (1..=n).zip(constants).filter(nonzero);
         terms.filter_map(|(k, c)| Some((f.get(n - k)?, c))).collect()
     }

@@ -2,8 +2,9 @@
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node, NodeId};
-use lindstedt_algebra::{Elementary, FunctionAlgebra, Ring};
+use lindstedt_algebra::{Elementary, FunctionAlgebra, Products, Ring};
 use rug::Rational;
+use std::ops::Range;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 
@@ -15,8 +16,101 @@ pub(crate) struct Evaluator<'a, A: FunctionAlgebra> {
     pub(crate) algebra: &'a A,
     pub(crate) equation: &'a Equation<A>,
     values: Vec<Vec<Option<A::Element>>>,
+    /// Of products, what is summed before its order comes.
+    ahead: Vec<Ahead<A::Element>>,
+    /// The last order that will be asked for, if it is known.
+    pub(crate) last: Option<usize>,
     /// Products of elements formed so far: the work counter.
     pub(crate) products: u64,
+}
+
+/// Of a product of two series the sums of products of coefficients that stay as they are, in advance of their orders:
+/// many orders at once from all coefficients, and of them a few at a time with the coefficients found meanwhile.
+pub(crate) struct Ahead<E> {
+    many: Option<Sums<E>>,
+    few: Option<Sums<E>>,
+}
+
+struct Sums<E> {
+    /// The orders of the coefficients are below.
+    below: usize,
+    /// The first of the orders, and their sums.
+    first: usize,
+    sums: Vec<E>,
+}
+
+/// The orders that are summed at once.
+const MANY: usize = 64;
+const FEW: usize = 8;
+
+impl<E> Sums<E> {
+    fn of(&self, n: usize) -> Option<&E> {
+        self.sums.get(n.checked_sub(self.first)?)
+    }
+}
+
+impl<E: Clone> Ahead<E> {
+    pub(crate) fn new() -> Self {
+        Self { many: None, few: None }
+    }
+
+    /// What is to be summed at order n, of all orders up to `last`: the orders of the coefficients, and those of their
+    /// products. They are below n - 1: these stay as they are, since of a limit cycle order n fixes the amplitude of the
+    /// one before.
+    pub(crate) fn next(&self, n: usize, last: usize) -> Option<[Range<usize>; 2]> {
+        if self.few.as_ref().is_some_and(|few| few.of(n).is_some()) {
+            return None;
+        }
+        let many = self.many.as_ref().filter(|many| many.of(n).is_some());
+        let (from, length, left) = match many {
+            Some(many) => (many.below, FEW, many.first + many.sums.len() - n),
+            None => (0, (n / 8).min(MANY), (last + 1).saturating_sub(n)),
+        };
+        let length = length.min(left);
+        (length > 1).then(|| [from..n - 1, n..n + length])
+    }
+
+    /// Takes these sums.
+    pub(crate) fn take(
+        &mut self,
+        [coefficients, orders]: [Range<usize>; 2],
+        mut sums: Vec<E>,
+        add: impl Fn(&mut E, &E),
+    ) {
+        let (below, first) = (coefficients.end, orders.start);
+        if coefficients.start == 0 {
+            let few = sums.iter().take(FEW).cloned().collect();
+            self.few = Some(Sums { below, first, sums: few });
+            self.many = Some(Sums { below, first, sums });
+            return;
+        }
+        for (order, sum) in orders.zip(&mut sums) {
+            if let Some(rest) = self.many.as_ref().and_then(|many| many.of(order)) {
+                add(sum, rest);
+            }
+        }
+        self.few = Some(Sums { below, first, sums });
+    }
+
+    fn sums(&self, n: usize) -> Option<&Sums<E>> {
+        [&self.few, &self.many].into_iter().flatten().find(|sums| sums.of(n).is_some())
+    }
+
+    /// The sum of order n.
+    pub(crate) fn sum(&self, n: usize) -> Option<&E> {
+        self.sums(n)?.of(n)
+    }
+
+    /// The orders of the coefficients in the sum of order n are below.
+    pub(crate) fn below(&self, n: usize) -> usize {
+        self.sums(n).map_or(0, |sums| sums.below)
+    }
+
+    /// Coefficient n changes.
+    fn forget(&mut self, n: usize) {
+        self.few.take_if(|sums| n < sums.below);
+        self.many.take_if(|sums| n < sums.below);
+    }
 }
 
 /// The highest order at which a node can be different from zero, if there is one.
@@ -31,7 +125,8 @@ fn degree<E>(node: &Node<E>) -> Option<usize> {
 impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
     pub(crate) fn new(algebra: &'a A, equation: &'a Equation<A>) -> Self {
         let values = equation.nodes.iter().map(|_| Vec::new()).collect();
-        Self { algebra, equation, values, products: 0 }
+        let ahead = equation.nodes.iter().map(|_| Ahead::new()).collect();
+        Self { algebra, equation, values, ahead, last: None, products: 0 }
     }
 
     /// The coefficient computed before, if any.
@@ -60,6 +155,12 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         for (list, _) in self.values.iter_mut().zip(sensitive).filter(|(_, s)| **s) {
             list.truncate(n);
         }
+        self.forget_ahead(n);
+    }
+
+    /// Coefficient n changes.
+    fn forget_ahead(&mut self, n: usize) {
+        self.ahead.iter_mut().for_each(|ahead| ahead.forget(n));
     }
 
     /// The coefficients up to `order` of the nodes that are not polynomial.
@@ -93,6 +194,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
                 self.algebra.add_assign(value, correction);
             }
         }
+        self.forget_ahead(n);
     }
 
     /// The coefficient of eps^n of a node.
@@ -154,7 +256,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
                 }
                 Ok(sum)
             }
-            &Node::Product(a, b) => self.cauchy(a, b, n),
+            &Node::Product(a, b) => self.cauchy(node, [a, b], n),
             &Node::Logarithm(y) if n == 0 => {
                 let leading = self.coefficient(y, 0)?;
                 algebra.log_abs(&leading).ok_or_else(|| unsupported("ln"))
@@ -220,7 +322,12 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
     }
 
     /// sum_k a_k b_{n-k}; of a square, each product once.
-    fn cauchy(&mut self, a: NodeId, b: NodeId, n: usize) -> Result<A::Element, ExpandError> {
+    fn cauchy(
+        &mut self,
+        node: NodeId,
+        [a, b]: [NodeId; 2],
+        n: usize,
+    ) -> Result<A::Element, ExpandError> {
         let algebra = self.algebra;
         let nodes = &self.equation.nodes;
         let last = degree(&nodes[a]).unwrap_or(n).min(n);
@@ -238,21 +345,68 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
             self.ensure(dear, k_dear)?;
             range.push(k);
         }
-        let pair = |k: usize| Some((self.known(a, k)?, self.known(b, n - k)?));
-        if a == b {
-            let half: Vec<_> =
-                range.iter().filter(|&&k| 2 * k < n).filter_map(|&k| pair(k)).collect();
-            let middle = n.is_multiple_of(2).then(|| self.known(a, n / 2)).flatten();
-            let sum = algebra.coefficient_of_square(&half, middle);
-            let count = half.len() as u64 + u64::from(middle.is_some());
-            self.products += count;
-            return Ok(sum);
+        self.look_ahead(node, [a, b], n)?;
+        let ahead = &self.ahead[node];
+        let below = ahead.below(n);
+        let [once, twice] = self.pairs([a, b], n, &range, |k| k >= below);
+        let mut sum = if a == b {
+            algebra.coefficient_of_square(&twice, once.first().map(|(c, _)| *c))
+        } else {
+            algebra.sum_of_products(&once)
+        };
+        if let Some(ahead) = ahead.sum(n) {
+            algebra.add_assign(&mut sum, ahead);
         }
-        let pairs: Vec<_> = range.iter().filter_map(|&k| pair(k)).collect();
-        let sum = algebra.sum_of_products(&pairs);
-        let count = pairs.len() as u64;
-        self.products += count;
+        let formed = |k: &&usize| a != b || 2 * **k <= n;
+        let count = range.iter().filter(formed).count();
+        self.products += count as u64;
         Ok(sum)
+    }
+
+    /// The pairs of order n of a product whose larger order is wanted, once and twice.
+    fn pairs(
+        &self,
+        [a, b]: [NodeId; 2],
+        n: usize,
+        range: &[usize],
+        wanted: impl Fn(usize) -> bool,
+    ) -> Products<'_, A::Element> {
+        let pair = |&k: &usize| Some((self.known(a, k)?, self.known(b, n - k)?));
+        let wanted = range.iter().filter(|&&k| wanted(k.max(n - k)));
+        if a != b {
+            return [wanted.filter_map(pair).collect(), Vec::new()];
+        }
+        let middle = wanted.clone().filter(|&&k| 2 * k == n);
+        let half = wanted.clone().filter(|&&k| 2 * k < n);
+        [middle.filter_map(pair).collect(), half.filter_map(pair).collect()]
+    }
+
+    /// Sums of order n of a product, and of some orders after it, where many sums at once cost less than one by one.
+    /// Products are counted at their order.
+    fn look_ahead(
+        &mut self,
+        node: NodeId,
+        [a, b]: [NodeId; 2],
+        n: usize,
+    ) -> Result<(), ExpandError> {
+        let series = [a, b].iter().all(|factor| degree(&self.equation.nodes[*factor]).is_none());
+        let last = self.last.filter(|_| A::SUMS_AT_ONCE && series);
+        let Some(next) = last.and_then(|last| self.ahead[node].next(n, last)) else {
+            return Ok(());
+        };
+        let [coefficients, orders] = next.clone();
+        for k in 0..coefficients.end {
+            self.ensure(a, k)?;
+            self.ensure(b, k)?;
+        }
+        let list = |n: usize| {
+            let range: Vec<usize> = (n + 1 - coefficients.end..coefficients.end).collect();
+            self.pairs([a, b], n, &range, |k| k >= coefficients.start)
+        };
+        let lists: Vec<_> = orders.map(list).collect();
+        let (algebra, sums) = (self.algebra, self.algebra.sums_of_products(&lists));
+        self.ahead[node].take(next, sums, |sum, rest| algebra.add_assign(sum, rest));
+        Ok(())
     }
 
     /// sum_k k a_k b_{n-k} over the range.
@@ -260,7 +414,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         &mut self,
         a: NodeId,
         b: NodeId,
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         n: usize,
     ) -> Result<A::Element, ExpandError> {
         self.weighted_by(a, b, range, n, &|k| Rational::from(k))
@@ -271,7 +425,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         &mut self,
         a: NodeId,
         b: NodeId,
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         n: usize,
         weight: &dyn Fn(usize) -> Rational,
     ) -> Result<A::Element, ExpandError> {

@@ -12,11 +12,11 @@ mod limit_cycle;
 mod period;
 mod residual;
 mod residual_bound;
-mod residual_point;
 pub mod resonance;
 mod size;
+mod trace;
 
-pub use bound::{degrees, equation_denominator};
+pub use bound::{Degrees, degrees, equation_denominator};
 pub use clock::{
     ClockExpansion, ClockFrequency, ClockMean, check_clock, clock_variable, expand_clock,
 };
@@ -29,4 +29,4 @@ pub use excitation::Excitation;
 pub use period::{Period, conservative_period};
 pub use residual::{check, check_from, check_normalisation};
 pub use residual_bound::{Expected, FrequencyBound, OrderNumbers, ResidualBound};
-pub use residual_point::{AtPhase, fails_at_phase};
+pub use trace::{Trace, partial_sums, trace};

@@ -75,11 +75,14 @@ impl Generators {
 
     /// The product of powers.
     pub(crate) fn product(&self, exponents: &[u32]) -> Integer {
-        let mut product = Integer::from(1);
-        for (generator, &exponent) in self.numbers.iter().zip(exponents).filter(|(_, e)| **e > 0) {
-            product *= Integer::from(rug::ops::Pow::pow(generator, exponent));
+        let used = self.numbers.iter().zip(exponents).filter(|(_, e)| **e > 0);
+        let mut factors: Vec<Integer> =
+            used.map(|(generator, &e)| rug::ops::Pow::pow(generator, e).into()).collect();
+        // Factors of like length, pair by pair.
+        while factors.len() > 1 {
+            factors = factors.chunks(2).map(|pair| pair.iter().product()).collect();
         }
-        product
+        factors.pop().unwrap_or_else(|| Integer::from(1))
     }
 
     /// The exponent of generator number `index` in a number that is not zero.

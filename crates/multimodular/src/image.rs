@@ -2,14 +2,13 @@
 //! modulo the product of two primes.
 
 use crate::lifted::Lifted;
-use crate::phase::Phase;
 use crate::place::Place;
 use crate::{Error, Over, RationalBinding};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_equation::Expression;
 use lindstedt_expand::{
-    AtPhase, Equation, ExpandError, Expansion, Known, OrderNumbers, OrderWork, Request, check_from,
-    check_normalisation, compile, extend, fails_at_phase,
+    Degrees, Equation, ExpandError, Expansion, Known, OrderNumbers, OrderWork, Request, Trace,
+    check_from, compile, extend, partial_sums, trace,
 };
 use lindstedt_phase::Modular;
 use lindstedt_phase::modular::{LANES, PrimeFields, PrimePair, Residues};
@@ -17,11 +16,15 @@ use lindstedt_series::Series;
 use rug::Rational;
 use std::sync::Arc;
 
-/// Phases at which an image of the frequency is substituted: of three, each of 30 bits, a wrong one passes all with a
-/// chance below 2^-50 up to degree 2^11.
-const PHASES: u32 = 3;
+/// Numbers in the place of eps at which an image of the frequency is checked: of three, each of 28 bits and more, a wrong
+/// one passes all with a chance below 2^-50 up to order 2^11.
+const PARAMETERS: u32 = 3;
+
+/// The numbers of an order that every image has, in this sequence.
+const SERIES: [Place; 3] = [Place::Squared, Place::Frequency, Place::Period];
 
 /// What is derived.
+#[derive(Clone)]
 pub(crate) struct Job<'a> {
     pub equation: &'a Expression,
     pub binding: &'a dyn RationalBinding,
@@ -56,6 +59,11 @@ impl Image {
         &self.values[n]
     }
 
+    /// The binary logarithm of the product of its primes.
+    pub(crate) fn bits(&self) -> f64 {
+        (self.ring.modulus() as f64).log2()
+    }
+
     /// The harmonics of x_n.
     pub(crate) fn harmonics(&self, n: usize) -> Vec<usize> {
         self.places[n].iter().filter_map(|place| place.harmonic()).collect()
@@ -68,6 +76,16 @@ impl Image {
         }
         self.places = Arc::clone(&other.places);
         Some(self)
+    }
+
+    /// The same with W_n, omega_n and T_n alone.
+    pub(crate) fn brief(mut self) -> Self {
+        self.values.iter_mut().for_each(|list| {
+            list.truncate(SERIES.len());
+            list.shrink_to_fit();
+        });
+        self.places = Arc::new(vec![SERIES.to_vec(); self.values.len()]);
+        self
     }
 
     /// Order n is lifted.
@@ -122,22 +140,96 @@ impl Job<'_> {
         Ok(Ok(images))
     }
 
-    /// W_n, omega_n and T_n modulo eight primes, from images that are substituted at one phase alone.
-    pub(crate) fn brief_image(&self, field: PrimeFields) -> Attempt {
+    /// W_n, omega_n and T_n modulo eight primes, with all that was formed on the way to them held against its operands at
+    /// some numbers in the place of eps.
+    pub(crate) fn brief_image(&self, field: PrimeFields, degrees: &[Degrees]) -> Attempt {
         let (algebra, equation) = self.over(field)?;
-        let known = Known { solution: &[], squared: &[] };
-        let mut images = match self.derived(&algebra, &equation, known)? {
-            Ok(images) => images,
+        let go_on = &mut |_: &OrderWork| !self.stop.asked();
+        let found = trace(&algebra, &equation, &self.request, go_on);
+        self.go_on()?;
+        let trace = match found {
+            Ok(trace) => trace,
             Err(unlucky) => return Ok(Err(unlucky)),
         };
-        self.check_at_phase(&algebra, &equation, &images)?;
-        for Image { places, values, .. } in &mut images {
-            for (places, values) in places.iter().zip(values) {
-                values.truncate(places.iter().filter(|place| place.harmonic().is_none()).count());
-                values.shrink_to_fit();
+        self.check_trace(&algebra, &equation, &trace, degrees)?;
+        let series = self.series(&field, trace.squared)?;
+        let lists = (0..=self.request.order).map(|n| series.each_ref().map(|list| list[n]));
+        let places = vec![SERIES.to_vec(); self.request.order + 1];
+        Ok(Ok(parted(&field, places, lists)))
+    }
+
+    /// Whether what the driver formed modulo eight primes solves the equation.
+    ///
+    /// The Q points tell harmonics below 4Q apart up to the sign: h and 4Q - h are one function there. So where x_n has
+    /// degree D_n, what has not been told apart stands in the harmonics from 4Q - D_n on, a product of orders k and n - k
+    /// brings it down to 4Q - D_k - D_(n-k) and no further, derivatives and u'' + u = f leave it where it is: of
+    /// order n the harmonics below 4Q - D_n are right, and depend on no others. With 4Q >= D + 2 these are the first
+    /// two of all orders, from which the frequency follows.
+    ///
+    /// Products of series are checked at all points, the equation in all harmonics that are right, at some numbers e in the
+    /// place of eps that the primes decide: what does not hold holds at one of p numbers with a chance of N/p.
+    pub(crate) fn check_trace(
+        &self,
+        algebra: &Modular,
+        equation: &Equation<Modular>,
+        trace: &Trace<Modular>,
+        degrees: &[Degrees],
+    ) -> Result<(), Error> {
+        let (field, order) = (algebra.field(), self.request.order);
+        let broken = Error::from(ExpandError::Residual { order });
+        if !trace.is_normalised(algebra, &self.request) {
+            return Err(ExpandError::Normalisation { order }.into());
+        }
+        let degree = |of: &Degrees| of.iter().flatten().max().copied().unwrap_or(0);
+        let right = |harmonic: usize| {
+            degrees.partition_point(|of| harmonic + degree(of) < 4 * self.points).checked_sub(1)
+        };
+        let right: Vec<Option<usize>> = (0..=2 * self.points).map(right).collect();
+        if right.iter().take(2).any(|last| *last != Some(order)) {
+            return Err(broken);
+        }
+        let powers = |number: u32| {
+            let e = field.rational(&Rational::from(seed(field.primes()[0], number)));
+            let powers =
+                std::iter::successors(Some(field.one()), |power| Some(field.mul(power, &e)));
+            powers.take(order + 1).collect()
+        };
+        let powers: Vec<Vec<Residues>> = (0..PARAMETERS).map(powers).collect();
+        let mut lists = trace.nodes.iter().chain([&trace.solution]);
+        if !lists.all(|list| algebra.forms_agree(list, &powers))
+            || !trace.nodes_hold_at(algebra, equation, &powers)
+        {
+            return Err(broken);
+        }
+        for powers in &powers {
+            // kappa sum_l W_(n-l) x_l'' + F_n, n up to the last order that is right in this harmonic.
+            let sums = partial_sums(field, &trace.squared, powers);
+            let curvature = |l: usize, k: usize| {
+                let last = right[k]?.checked_sub(l)?;
+                let square = field.mul(&trace.stiffness, &field.rational(&Rational::from(k * k)));
+                Some(field.neg(&field.mul(&square, &field.mul(&powers[l], &sums[last]))))
+            };
+            let force = |n: usize, k: usize| (n <= right[k]?).then(|| powers[n]);
+            let mut residual = algebra.weighted_sum(&trace.solution, curvature);
+            let forces = algebra.weighted_sum(trace.force(equation), force);
+            residual.iter_mut().zip(&forces).for_each(|(a, b)| field.add_assign(a, b));
+            if residual.iter().any(|c| !field.is_zero(c)) {
+                return Err(broken);
             }
         }
-        Ok(Ok(images))
+        Ok(())
+    }
+
+    /// W, omega with omega^2 = W, and T with omega T = 1.
+    fn series(
+        &self,
+        field: &PrimeFields,
+        squared: Vec<Residues>,
+    ) -> Result<[Vec<Residues>; 3], Error> {
+        let squared = Series::truncated(squared);
+        let Some(frequency) = squared.square_root(field) else { return Err(Error::OutOfPrimes) };
+        let Some(period) = frequency.reciprocal(field) else { return Err(Error::OutOfPrimes) };
+        Ok([squared, frequency, period].map(|series| series.coefficients))
     }
 
     /// What the driver gives modulo eight primes: every number that does not vanish modulo all of them.
@@ -155,35 +247,19 @@ impl Job<'_> {
             Ok(expansion) => expansion,
             Err(unlucky) => return Ok(Err(unlucky)),
         };
-        let squared = Series::truncated(expansion.frequency_squared);
-        let Some(frequency) = squared.square_root(&field) else { return Err(Error::OutOfPrimes) };
-        let Some(period) = frequency.reciprocal(&field) else { return Err(Error::OutOfPrimes) };
-        let mut places = Vec::new();
-        let mut values = [const { Vec::new() }; LANES / 2];
+        let series = self.series(&field, expansion.frequency_squared)?;
+        let (mut places, mut lists) = (Vec::new(), Vec::new());
         for (n, x) in expansion.solution.iter().enumerate() {
             let [cos, sin] = algebra.harmonics(x);
             let cosines = cos.into_iter().enumerate().map(|(k, c)| (Place::Cosine(k), c));
             let sines = sin.into_iter().enumerate().map(|(k, c)| (Place::Sine(k), c));
             let used = cosines.chain(sines).filter(|(_, value)| !field.is_zero(value));
-            let numbers = [
-                (Place::Squared, squared.coefficients[n]),
-                (Place::Frequency, frequency.coefficients[n]),
-                (Place::Period, period.coefficients[n]),
-            ];
-            let all = numbers.into_iter().chain(used);
-            let (place, parts): (Vec<_>, Vec<_>) =
-                all.map(|(place, value)| (place, field.parted(&value))).unzip();
-            places.push(place);
-            for (i, list) in values.iter_mut().enumerate() {
-                list.push(parts.iter().map(|parts| parts[i]).collect());
-            }
+            let numbers = SERIES.into_iter().zip(series.each_ref().map(|list| list[n]));
+            let (of_order, list): (Vec<_>, Vec<_>) = numbers.chain(used).unzip();
+            places.push(of_order);
+            lists.push(list);
         }
-        let places = Arc::new(places);
-        Ok(Ok(std::array::from_fn(|i| Image {
-            ring: field.pairs()[i],
-            places: Arc::clone(&places),
-            values: std::mem::take(&mut values[i]),
-        })))
+        Ok(Ok(parted(&field, places, lists.into_iter())))
     }
 
     /// Substitutes images into the equation modulo their primes; the orders below `first` are proved. What is checked is
@@ -195,46 +271,14 @@ impl Job<'_> {
         images: &Group,
         first: usize,
     ) -> Result<(), Error> {
-        let (expansion, _) = self.stated(algebra, images)?;
+        let expansion = self.stated(algebra, images)?;
         let checked = check_from(algebra, equation, &expansion, first)?;
         let broken = Error::from(ExpandError::Residual { order: checked });
         if checked == self.request.order { Ok(()) } else { Err(broken) }
     }
 
-    /// Substitutes images at some phases, which the primes decide: what does not vanish there, does not; what does,
-    /// does not with a chance of twice its degree over p at each of them.
-    pub(crate) fn check_at_phase(
-        &self,
-        algebra: &Modular,
-        equation: &Equation<Modular>,
-        images: &Group,
-    ) -> Result<(), Error> {
-        let field = algebra.field();
-        let (expansion, frequency) = self.stated(algebra, images)?;
-        check_normalisation(algebra, &expansion)?;
-        let solution: Vec<_> = expansion.solution.iter().map(|x| algebra.harmonics(x)).collect();
-        for number in 0..PHASES {
-            let phase = Phase::new(field, 2 * self.points, number).ok_or(Error::OutOfPrimes)?;
-            let mut functions = [const { Vec::new() }; 3];
-            for harmonics in &solution {
-                let values = phase.values(field, harmonics);
-                functions.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
-            }
-            let (squared, frequency) = (expansion.frequency_squared.clone(), frequency.clone());
-            let at = AtPhase { functions, squared, frequency, stiffness: expansion.stiffness };
-            if let Some(order) = fails_at_phase(field, equation, at) {
-                return Err(ExpandError::Residual { order }.into());
-            }
-        }
-        Ok(())
-    }
-
-    /// The expansion that the numbers of images state, and omega: its square is W, its product with T is 1.
-    fn stated(
-        &self,
-        algebra: &Modular,
-        images: &Group,
-    ) -> Result<(Expansion<Modular>, Vec<Residues>), Error> {
+    /// The expansion that the numbers of images state; omega^2 = W and omega T = 1.
+    fn stated(&self, algebra: &Modular, images: &Group) -> Result<Expansion<Modular>, Error> {
         let field = algebra.field();
         let size = 2 * self.points + 1;
         let mut solution = Vec::new();
@@ -266,7 +310,7 @@ impl Job<'_> {
             }
         }
         let amplitude = field.rational(&self.request.leading_amplitude);
-        let expansion = Expansion {
+        Ok(Expansion {
             condition: self.request.condition,
             stiffness: field.rational(&self.stiffness),
             frequency_squared: squared,
@@ -274,8 +318,7 @@ impl Job<'_> {
             solution,
             work: Vec::new(),
             certificates: Vec::new(),
-        };
-        Ok((expansion, frequency.coefficients))
+        })
     }
 
     /// Compares numbers over Q with an image that had no part in them.
@@ -300,4 +343,34 @@ impl Job<'_> {
         let all = agrees && numerators.next().is_none();
         if all { Ok(()) } else { Err(ExpandError::Residual { order: n }.into()) }
     }
+}
+
+/// Images from numbers modulo eight primes, order by order.
+fn parted<L: AsRef<[Residues]>>(
+    field: &PrimeFields,
+    places: Vec<Vec<Place>>,
+    lists: impl Iterator<Item = L>,
+) -> Group {
+    let mut values = [const { Vec::new() }; LANES / 2];
+    for list in lists {
+        let parts: Vec<_> = list.as_ref().iter().map(|value| field.parted(value)).collect();
+        for (i, of_pair) in values.iter_mut().enumerate() {
+            of_pair.push(parts.iter().map(|parts| parts[i]).collect());
+        }
+    }
+    let places = Arc::new(places);
+    std::array::from_fn(|i| Image {
+        ring: field.pairs()[i],
+        places: Arc::clone(&places),
+        values: std::mem::take(&mut values[i]),
+    })
+}
+
+/// A step of the generator splitmix64; another residue modulo every prime. Nothing else follows from these numbers.
+fn seed(prime: u32, number: u32) -> u64 {
+    let mut seed = u64::from(prime) << 32 | u64::from(number);
+    seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    seed = (seed ^ (seed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    seed = (seed ^ (seed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (seed >> 4).max(2)
 }

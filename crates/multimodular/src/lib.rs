@@ -19,7 +19,6 @@ mod image;
 mod images;
 mod lift;
 mod lifted;
-mod phase;
 mod place;
 #[cfg(test)]
 mod tests;
@@ -33,8 +32,8 @@ use lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Rationals, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{
-    Binding, ExpandError, Expansion, Request, ResidualBound, amplitude_reaction, compile, degrees,
-    equation_denominator, expand, leading_amplitude,
+    Binding, Degrees, ExpandError, Expansion, Request, ResidualBound, amplitude_reaction, compile,
+    degrees, equation_denominator, expand, leading_amplitude,
 };
 use lindstedt_phase::modular::PrimeFields;
 use lindstedt_phase::{Modular, Trigonometric};
@@ -180,7 +179,10 @@ pub fn derive(
     observer: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Proved, Error> {
     let setting = Setting::new(equation, binding, condition, order, stop)?;
-    let images = Images::new(&setting.job, setting.primes());
+    let primes = setting
+        .primes(setting.roots)
+        .take_while(|fields| fields.primes().iter().all(|prime| *prime >= SMALLEST));
+    let images = Images::new(&setting.job, primes);
     let (bound, largest) = (setting.bound.clone(), setting.largest);
     let (found, needs) = (Vec::new(), Vec::new());
     Ladder { job: &setting.job, images, bound, found, needs, largest }.climb(observer)
@@ -192,6 +194,9 @@ struct Setting<'a> {
     bound: ResidualBound,
     /// The highest harmonic.
     largest: usize,
+    /// The highest harmonics of x_n, and of all that is formed.
+    degrees: Vec<Degrees>,
+    degree: usize,
     /// 1/S of a limit cycle.
     reaction: Option<Rational>,
     /// The order of the root of unity that a prime must have, and what it must not divide.
@@ -219,7 +224,7 @@ impl<'a> Setting<'a> {
         let initial = Condition::InitialAmplitude;
         let zero = Request { order: 0, condition: initial, ..request.clone() };
         let stiffness = expand(&plain, &compiled, &zero, &mut |_| true)?.stiffness;
-        let largest = degrees.last().copied().unwrap_or(1);
+        let largest = degrees.iter().flatten().flatten().max().copied().unwrap_or(1);
         let is_cycle = condition == Condition::LimitCycle;
         let bound = ResidualBound::new(&compiled, &stiffness, largest, is_cycle)?;
         let reaction = amplitude_reaction(&plain, &compiled, &request)?;
@@ -228,14 +233,18 @@ impl<'a> Setting<'a> {
         numbers *= request.leading_amplitude.numer();
         numbers *= request.leading_amplitude.denom();
         let job = Job { equation, binding, request, stiffness, points, stop };
-        Ok(Self { job, bound, largest, reaction, roots, numbers })
+        Ok(Self { job, bound, largest, degrees, degree, reaction, roots, numbers })
     }
 
-    fn primes(&self) -> impl Iterator<Item = PrimeFields> {
-        let primes = PrimeFields::with_roots_of_unity(self.roots);
+    /// Primes with roots of unity of an order.
+    fn primes(&self, roots: u64) -> impl Iterator<Item = PrimeFields> {
+        let primes = PrimeFields::with_roots_of_unity(roots);
         primes.filter(|fields| fields.integer(&self.numbers).iter().all(|&residue| residue != 0))
     }
 }
+
+/// The primes of a whole expansion are above this.
+const SMALLEST: u32 = (1 << 30) - (1 << 28);
 
 /// Images modulo two primes each, which have more than 59.1 bits together, for so many bits.
 fn images_for(bits: u64) -> usize {

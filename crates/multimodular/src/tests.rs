@@ -133,13 +133,14 @@ pub(crate) fn with_images(count: usize, test: impl Fn(&Job<'_>, Vec<Image>)) {
 
 /// Some of the images of eight primes each.
 pub(crate) fn with_groups(count: usize, test: impl Fn(&Job<'_>, Vec<(PrimeFields, Group)>)) {
+    groups_of_order(ORDER, count, test);
+}
+
+fn groups_of_order(order: usize, count: usize, test: impl Fn(&Job<'_>, Vec<(PrimeFields, Group)>)) {
     let (equation, stop) = (van_der_pol(), Stop::default());
-    let request = Request {
-        condition: Condition::LimitCycle,
-        order: ORDER,
-        leading_amplitude: Rational::from(2),
-    };
-    let (points, roots) = Modular::points_for_degree(2 * ORDER + 3);
+    let request =
+        Request { condition: Condition::LimitCycle, order, leading_amplitude: Rational::from(2) };
+    let (points, roots) = Modular::points_for_degree(2 * order + 3);
     let stiffness = Rational::from(1);
     let job =
         Job { equation: &equation, binding: &NoNames, request, stiffness, points, stop: &stop };
@@ -159,6 +160,22 @@ pub(crate) fn broken(images: &Group, n: usize, place: Place, variant: usize) -> 
     let factor = [Integer::from(1), Integer::from(p), Integer::from(q)][variant % 3].clone();
     image.change(n, place, |value| ring.add(&value, &ring.integer(&factor)));
     broken
+}
+
+/// From order 16 on sums are formed ahead, from 72 on of more orders than are completed at once: the images still solve
+/// the equation, which their substitution multiplies out.
+#[test]
+fn what_is_summed_ahead_is_the_same() {
+    groups_of_order(110, 1, |job, groups| {
+        let (fields, images) = &groups[0];
+        let (algebra, equation) = job.over(*fields).unwrap();
+        assert_eq!(job.check(&algebra, &equation, images, 0), Ok(()));
+        let known = Known { solution: &[], squared: &[] };
+        let expansion = extend(&algebra, &equation, &job.request, known, &mut |_| true).unwrap();
+        // Of x x and x^2 x' every product is counted once, at its order: in two orders more there are three more.
+        let products: Vec<u64> = expansion.work.iter().map(|work| work.products).collect();
+        assert!(products[1..].windows(3).all(|list| list[2] == list[0] + 3), "{products:?}");
+    });
 }
 
 /// Every single number of an image, changed modulo a prime: substitution refuses it.

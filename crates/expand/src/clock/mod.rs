@@ -118,7 +118,7 @@ impl<A: ClockAlgebra> ClockDriver<'_, A> {
         let whole = algebra.add(&force, &self.paced(&self.forces, n));
         let mut terms = vec![(&whole, &self.driver.inverse_stiffness)];
         let known = &self.driver.frequency_squared[1..];
-        terms.extend(self.driver.convolution(known, &self.velocity_slopes, n));
+        terms.extend(self.driver.convolution(known, &self.velocity_slopes, n, |_| true));
         let sum = algebra.linear_combination(&terms);
         let inertia = algebra.derivative(&self.paced(&self.velocities, n));
         Ok([algebra.sub(&inertia, &sum), force])

@@ -19,9 +19,7 @@ const SERIES: usize = 3;
 
 /// What the numbers of the next order can be.
 pub struct Expected {
-    /// A common denominator of each of W_n, omega_n and T_n: proved, not guessed.
-    pub denominators: [Integer; SERIES],
-    /// Twice each of them times its denominator is below 2^this, and so is every Fourier coefficient of f_n.
+    /// Twice each of W_n, omega_n and T_n times its denominator is below 2^this.
     pub bits: u64,
     sizes: [Option<Size>; SERIES],
     force: Option<Size>,
@@ -88,12 +86,16 @@ impl FrequencyBound {
         let inverse = sum([root.clone(), convolution(frequency, period, range(), n)]);
         let sizes = [squared, root, inverse];
         let generators = &self.bound.generators;
-        let all = sizes.iter().chain([&force]).flatten();
-        let bits = all.map(|size| generators.bits(size) + 2).max().unwrap_or(1);
-        let denominator = |size: &Option<Size>| {
+        let bits = sizes.iter().flatten().map(|size| generators.bits(size) + 2);
+        Expected { bits: bits.max().unwrap_or(1), sizes, force }
+    }
+
+    /// A common denominator of each of W_n, omega_n and T_n: proved, not guessed.
+    pub fn denominators(&self, expected: &Expected) -> [Integer; SERIES] {
+        let generators = &self.bound.generators;
+        expected.sizes.each_ref().map(|size| {
             size.as_ref().map_or(Integer::from(1), |size| generators.product(&size.exponents))
-        };
-        Expected { denominators: sizes.each_ref().map(denominator), bits, sizes, force }
+        })
     }
 
     /// Takes W_n, omega_n and T_n, and the harmonics of x_n, which are those of f_n but for the first.
@@ -209,7 +211,7 @@ mod tests {
             let all = x.cos.iter().enumerate().chain(x.sin.iter().enumerate());
             let harmonics: Vec<usize> = all.filter(|(_, c)| !c.is_zero()).map(|(k, _)| k).collect();
             let squared = &found.frequency_squared[n];
-            assert!(Rational::from(squared * &expected.denominators[0]).is_integer());
+            assert!(Rational::from(squared * &ahead.denominators(&expected)[0]).is_integer());
             ahead.suppose(expected, [squared.is_zero(); 3], &harmonics);
         }
     }

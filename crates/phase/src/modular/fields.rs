@@ -6,6 +6,7 @@
 
 use super::pair::PrimePair;
 use super::primes;
+use super::shared::{Shared, SumsOfProducts};
 pub use super::words::{LANES, Residues};
 use super::words::{Plain, Words, padded};
 use lindstedt_algebra::{RationalAlgebra, Ring};
@@ -155,10 +156,23 @@ impl PrimeFields {
         self.vectorised(SumOfProducts { fields: self, pairs, length })
     }
 
+    /// The same for several sums that share their rows, of which every part is read once.
+    pub(super) fn sums<'a, B: Shared<'a>>(
+        &'a self,
+        sums: &[Vec<(&'a [Residues], B)>],
+    ) -> Vec<Vec<Residues>> {
+        match sums {
+            [pairs] => {
+                let length = longest(pairs);
+                vec![self.vectorised(SumOfProducts { fields: self, pairs, length })]
+            }
+            _ => self.vectorised(SumsOfProducts::new(self, sums)),
+        }
+    }
+
     /// sum_i c_i a_i\[j\] for every j, as long as the longest row.
     pub(super) fn combination(&self, terms: &[(&[Residues], Residues)]) -> Vec<Residues> {
-        let length = terms.iter().map(|(row, _)| row.len()).max().unwrap_or(0);
-        self.vectorised(SumOfProducts { fields: self, pairs: terms, length })
+        self.vectorised(SumOfProducts { fields: self, pairs: terms, length: longest(terms) })
     }
 
     /// 1/a for every a, with one inversion; nothing if one of them is no unit.
@@ -331,6 +345,23 @@ impl<W: Words> Moduli<W> {
         }
     }
 
+    /// The sum of some products at the points of one word.
+    #[inline(always)]
+    pub(super) fn sum_of_words(
+        &self,
+        mut pairs: impl ExactSizeIterator<Item = (W::Word, W::Word)>,
+        sums: &mut [Residues],
+    ) {
+        let mut t = self.zero();
+        while pairs.len() > 0 {
+            t = self.fold(t);
+            for (a, b) in pairs.by_ref().take(CHUNK) {
+                t = self.accumulate(t, a, b);
+            }
+        }
+        self.words.store(self.reduce(self.fold(t)), sums);
+    }
+
     /// t + sum_i a_i b_i at the points of one word.
     #[inline(always)]
     fn add_products<B: Factor>(
@@ -416,6 +447,11 @@ impl<B: Factor> Kernel for SumOfProducts<'_, B> {
         Moduli::new(words, self.fields).sum_of_products(self.pairs, &mut sums);
         sums
     }
+}
+
+/// The length of the longest first factor.
+pub(super) fn longest<B>(pairs: &[(&[Residues], B)]) -> usize {
+    pairs.iter().map(|(row, _)| row.len()).max().unwrap_or(0)
 }
 
 /// t + a b.

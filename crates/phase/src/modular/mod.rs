@@ -14,6 +14,7 @@
 mod fields;
 mod pair;
 mod primes;
+mod shared;
 mod transform;
 mod words;
 
@@ -21,7 +22,7 @@ pub use fields::{LANES, PrimeFields, Residues};
 pub use pair::PrimePair;
 
 use lindstedt_algebra::{
-    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring, Stop,
+    FunctionAlgebra, PhaseAlgebra, PhaseError, Products, RationalAlgebra, Resolution, Ring, Stop,
 };
 use rug::{Integer, Rational};
 use std::sync::{Arc, OnceLock};
@@ -118,11 +119,7 @@ impl Part {
     /// sum_i c_i f_i over parts of one symmetry, in the form that needs the fewest transforms.
     fn combination(field: &PrimeFields, terms: &[(&Self, Residues)]) -> Option<Self> {
         let (first, _) = terms.first()?;
-        let lacking = |form: fn(&Forms) -> &OnceLock<Vec<Residues>>| {
-            terms.iter().filter(|(part, _)| form(&part.forms).get().is_none()).count()
-        };
-        let (no_coefficients, no_values) =
-            (lacking(|forms| &forms.coefficients), lacking(|forms| &forms.values));
+        let [no_coefficients, no_values] = lacking(terms.iter().map(|(part, _)| *part));
         let by_values = no_values == 0 && terms.len() <= SHORT || no_coefficients > no_values;
         let by_coefficients = no_coefficients == 0 || !by_values;
         let combine = |form: fn(&Self) -> &[Residues]| {
@@ -185,6 +182,13 @@ impl Modular {
         (rows * columns, 8 * (rows * columns) as u64)
     }
 
+    /// The same where products up to `degree` need only be right in the first harmonics: harmonics h and 4Q - h are one
+    /// function at the points, so that those below 4Q - `degree` stay apart from all others.
+    pub fn points_for_first_harmonic(degree: usize) -> (usize, u64) {
+        let (rows, columns) = transform::size((degree + 2).div_ceil(4));
+        (rows * columns, 8 * (rows * columns) as u64)
+    }
+
     /// The algebra with the given number of points per quarter period; nothing when the field
     /// has no root of unity of order 8 `points`.
     pub fn new(field: PrimeFields, points: usize) -> Option<Self> {
@@ -227,9 +231,17 @@ impl Modular {
 
     /// Nothing if it vanishes.
     fn part(&self, symmetry: Symmetry, coefficients: Vec<Residues>) -> Option<Part> {
+        self.part_of(symmetry, Some(coefficients), None)
+    }
+
+    fn part_of(
+        &self,
+        symmetry: Symmetry,
+        coefficients: Option<Vec<Residues>>,
+        values: Option<Vec<Residues>>,
+    ) -> Option<Part> {
         let transform = Arc::clone(&self.transform);
-        let empty = Part { symmetry, forms: Arc::default(), transform };
-        empty.with_forms(Some(coefficients), None)
+        Part { symmetry, forms: Arc::default(), transform }.with_forms(coefficients, values)
     }
 
     /// The Fourier coefficients (cos_k, sin_k) of an element, up to the highest harmonic.
@@ -257,6 +269,51 @@ impl Modular {
         ModularElement { parts }
     }
 
+    /// Whether the coefficients and the values of functions belong together where both are known: those of
+    /// sum_n c_n f_n, for some random c.
+    pub fn forms_agree(&self, f: &[ModularElement], c: &[Vec<Residues>]) -> bool {
+        SYMMETRIES.into_iter().all(|symmetry| {
+            let forms: Vec<_> = f
+                .iter()
+                .enumerate()
+                .filter_map(|(n, f)| {
+                    let Forms { coefficients, values } =
+                        &*f.parts[symmetry.index()].as_ref()?.forms;
+                    Some((n, [coefficients.get()?.as_slice(), values.get()?.as_slice()]))
+                })
+                .collect();
+            let [coefficients, values] = [0, 1].map(|form| {
+                let terms =
+                    |c: &Vec<Residues>| forms.iter().map(|(n, f)| (f[form], c[*n])).collect();
+                self.field.sums(&c.iter().map(terms).collect::<Vec<_>>())
+            });
+            let agree = |(coefficients, values): (Vec<_>, Vec<_>)| {
+                self.transform.values(symmetry, &coefficients) == values
+            };
+            forms.is_empty() || coefficients.into_iter().zip(values).all(agree)
+        })
+    }
+
+    /// sum_n c_(n,k) f_(n,k) for every harmonic k of every symmetry, where there is a factor.
+    pub fn weighted_sum(
+        &self,
+        f: &[ModularElement],
+        factor: impl Fn(usize, usize) -> Option<Residues>,
+    ) -> Vec<Residues> {
+        let mut sums = vec![self.field.zero(); SYMMETRIES.len() * self.points];
+        for (n, f) in f.iter().enumerate() {
+            for part in f.parts.iter().flatten() {
+                let sums = &mut sums[part.symmetry.index() * self.points..][..self.points];
+                for (k, (sum, c)) in sums.iter_mut().zip(part.coefficients()).enumerate() {
+                    if let Some(factor) = factor(n, part.symmetry.harmonic(k)) {
+                        *sum = self.field.sum(sum, &self.field.product(c, &factor));
+                    }
+                }
+            }
+        }
+        sums
+    }
+
     /// One coefficient, of harmonic k of the symmetry.
     fn single(&self, symmetry: Symmetry, k: usize, c: Residues) -> ModularElement {
         let mut f = self.zero();
@@ -271,60 +328,81 @@ impl Modular {
         part.and_then(|part| part.coefficients().get(k).copied()).unwrap_or_default()
     }
 
-    /// The sum of products and of `doubled` products taken twice, point by point.
-    fn products(
-        &self,
-        pairs: &[(&ModularElement, &ModularElement)],
-        doubled: &[(&ModularElement, &ModularElement)],
-    ) -> ModularElement {
+    /// Sums of products, those of the second half of a list twice, point by point.
+    fn products(&self, lists: &[Products<'_, ModularElement>]) -> Vec<ModularElement> {
         if self.stop.asked() {
-            return self.zero();
+            return lists.iter().map(|_| self.zero()).collect();
         }
-        let [once, twice] = [pairs, doubled].map(|pairs| self.pointwise(pairs));
-        let mut sum = self.zero();
-        for (symmetry, (once, twice)) in SYMMETRIES.into_iter().zip(once.into_iter().zip(twice)) {
-            let double = |list: Vec<Residues>| -> Vec<Residues> {
-                list.iter().map(|a| self.field.add(a, a)).collect()
-            };
-            let twice = twice.map(double);
-            let values = match (once, twice) {
-                (Some(mut a), Some(b)) => {
-                    add_lists(&self.field, &mut a, &b);
-                    a
-                }
-                (a, b) => match a.or(b) {
-                    Some(values) => values,
-                    None => continue,
-                },
-            };
-            let empty = self.part(symmetry, vec![self.field.one()]);
-            sum.parts[symmetry.index()] =
-                empty.and_then(|part| part.with_forms(None, Some(values)));
-        }
-        sum
-    }
-
-    /// The values of a sum of products, by symmetry; nothing where no product has it.
-    fn pointwise(
-        &self,
-        pairs: &[(&ModularElement, &ModularElement)],
-    ) -> [Option<Vec<Residues>>; 4] {
-        let mut factors: [Vec<(&[Residues], &[Residues])>; 4] = [const { Vec::new() }; 4];
-        for (f, g) in pairs {
-            for p in SYMMETRIES {
-                for q in SYMMETRIES {
-                    if let (Some(a), Some(b)) = (&f.parts[p.index()], &g.parts[q.index()]) {
-                        let list = &mut factors[p.times(q).index()];
-                        if list.is_empty() {
-                            list.reserve(pairs.len());
-                        }
-                        list.push((a.values(), b.values()));
+        // Once and twice, by symmetry; no pairs where no product has it.
+        let factors: Vec<[Factors<'_>; 4]> =
+            lists.iter().flatten().map(|pairs| factors(pairs)).collect();
+        let is_there = |pairs: &&Factors<'_>| !pairs.is_empty();
+        let there: Vec<_> = factors.iter().flatten().filter(is_there).cloned().collect();
+        let mut values = self.field.sums(&there).into_iter();
+        let mut rows = factors.iter().map(|by_symmetry| {
+            by_symmetry.each_ref().map(|pairs| is_there(&pairs).then(|| values.next()).flatten())
+        });
+        let mut sum = || {
+            let [once, twice] = [rows.next(), rows.next()].map(Option::unwrap_or_default);
+            let mut sum = self.zero();
+            for (symmetry, (once, twice)) in SYMMETRIES.into_iter().zip(once.into_iter().zip(twice))
+            {
+                let twice = twice.map(|mut list| {
+                    list.iter_mut().for_each(|a| *a = self.field.add(a, a));
+                    list
+                });
+                let values = match (once, twice) {
+                    (Some(mut a), Some(b)) => {
+                        add_lists(&self.field, &mut a, &b);
+                        Some(a)
                     }
+                    (a, b) => a.or(b),
+                };
+                sum.parts[symmetry.index()] = self.part_of(symmetry, None, values);
+            }
+            sum
+        };
+        lists.iter().map(|_| sum()).collect()
+    }
+}
+
+/// Pairs of values at the points.
+type Factors<'a> = Vec<(&'a [Residues], &'a [Residues])>;
+
+/// The products of parts that a sum of products is, by symmetry.
+fn factors<'a>(pairs: &[(&'a ModularElement, &'a ModularElement)]) -> [Factors<'a>; 4] {
+    let mut factors: [Factors<'a>; 4] = [const { Vec::new() }; 4];
+    for (f, g) in pairs {
+        for p in SYMMETRIES {
+            for q in SYMMETRIES {
+                if let (Some(a), Some(b)) = (&f.parts[p.index()], &g.parts[q.index()]) {
+                    let list = &mut factors[p.times(q).index()];
+                    if list.is_empty() {
+                        list.reserve(pairs.len());
+                    }
+                    list.push((a.values(), b.values()));
                 }
             }
         }
-        factors.map(|pairs| (!pairs.is_empty()).then(|| self.field.pointwise(&pairs, self.points)))
     }
+    factors
+}
+
+/// The parts of one symmetry of linear combinations.
+fn of_symmetry<'a>(
+    terms: &[(&'a ModularElement, &Residues)],
+    symmetry: Symmetry,
+) -> Vec<(&'a Part, Residues)> {
+    let part =
+        |(f, c): &(&'a ModularElement, &Residues)| Some((f.parts[symmetry.index()].as_ref()?, **c));
+    terms.iter().filter_map(part).collect()
+}
+
+/// How many parts lack their coefficients, and how many their values.
+fn lacking<'a>(parts: impl Iterator<Item = &'a Part> + Clone) -> [usize; 2] {
+    let forms: [fn(&Forms) -> &OnceLock<Vec<Residues>>; 2] =
+        [|forms| &forms.coefficients, |forms| &forms.values];
+    forms.map(|form| parts.clone().filter(|part| form(&part.forms).get().is_none()).count())
 }
 
 fn add_lists(field: &PrimeFields, a: &mut [Residues], b: &[Residues]) {
@@ -384,7 +462,8 @@ impl Ring for Modular {
         if rest.is_empty() {
             return linear;
         }
-        let mut sum = self.products(&rest, &[]);
+        let mut sums = self.products(&[[rest, Vec::new()]]);
+        let mut sum = sums.pop().unwrap_or_else(|| self.zero());
         self.add_assign(&mut sum, &linear);
         sum
     }
@@ -394,7 +473,12 @@ impl Ring for Modular {
         middle: Option<&ModularElement>,
     ) -> ModularElement {
         let middle: Vec<_> = middle.map(|m| (m, m)).into_iter().collect();
-        self.products(&middle, pairs)
+        let mut sums = self.products(&[[middle, pairs.to_vec()]]);
+        sums.pop().unwrap_or_else(|| self.zero())
+    }
+    const SUMS_AT_ONCE: bool = true;
+    fn sums_of_products(&self, lists: &[Products<'_, ModularElement>]) -> Vec<ModularElement> {
+        self.products(lists)
     }
 }
 
@@ -438,6 +522,30 @@ impl FunctionAlgebra for Modular {
             Part::combination(&self.field, &of_terms)
         });
         ModularElement { parts }
+    }
+    fn linear_combinations(
+        &self,
+        lists: &[Vec<(&ModularElement, &Residues)>],
+    ) -> Vec<ModularElement> {
+        let mut elements = vec![self.zero(); lists.len()];
+        for symmetry in SYMMETRIES {
+            let parts: Vec<_> = lists.iter().map(|terms| of_symmetry(terms, symmetry)).collect();
+            let [no_coefficients, no_values] =
+                lacking(parts.iter().flatten().map(|(part, _)| *part));
+            let by_values = no_coefficients > no_values;
+            let form = if by_values { Part::values } else { Part::coefficients };
+            let rows: Vec<Vec<_>> = parts
+                .iter()
+                .map(|terms| terms.iter().map(|&(part, c)| (form(part), c)).collect())
+                .collect();
+            let sums = self.field.sums(&rows);
+            for (element, sum) in elements.iter_mut().zip(sums) {
+                let forms = if by_values { [None, Some(sum)] } else { [Some(sum), None] };
+                let [coefficients, values] = forms;
+                element.parts[symmetry.index()] = self.part_of(symmetry, coefficients, values);
+            }
+        }
+        elements
     }
     fn as_constant(&self, f: &ModularElement) -> Option<Residues> {
         match &f.parts {

@@ -1,7 +1,7 @@
 //! Primes below 2^30 and roots of unity modulo them.
 
-/// Every prime is above this, so that two of them count 59 bits.
-pub(super) const SMALLEST: u64 = (1 << 30) - (1 << 28);
+/// Every prime is above this.
+pub(super) const SMALLEST: u64 = 1 << 28;
 /// Bases that decide the primality of any number below 4 759 123 141 (G. Jaeschke, Math. Comp. 61 (1993) 915).
 const BASES: [u64; 3] = [2, 7, 61];
 

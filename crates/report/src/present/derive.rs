@@ -250,9 +250,9 @@ impl Board<'_> {
             ),
             (_, Some(last)) => vanishes(last) + ".",
             (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
-                "From {primes} primes of 30 bits, more than its numbers can hold by bounds proved in advance; no solution.\n\
-                 Four images were substituted into the equation, the others at three phases each: a wrong one passes with a\n\
-                 chance below 2^-50, one of {primes} with a chance below {primes}*2^-50 = {:.1e}.",
+                "From {primes} primes below 2^30, more than its numbers can hold by bounds proved in advance; no solution.\n\
+                 All that was formed modulo them was held against its operands at three numbers in the place of eps: what is\n\
+                 wrong passes with a chance below 2^-50, one of {primes} with a chance below {primes}*2^-50 = {:.1e}.",
                 *primes as f64 * 2f64.powi(-50)
             ),
             (Solution::FrequencyOnly { primes: None }, None) => {

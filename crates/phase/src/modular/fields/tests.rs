@@ -141,6 +141,12 @@ fn every_kind_of_vector_agrees() {
             assert_eq!(fields.pointwise(&pairs, length), products, "{length} {fields:?}");
             assert_eq!(fields.pointwise(&vanishes, length), vec![ZERO; length], "{fields:?}");
             assert_eq!(fields.combination(&terms), combination, "{length} {fields:?}");
+            // Sums at once, of rows that end apart.
+            let sums = fields.sums(&[pairs.clone(), Vec::new(), pairs[34..].to_vec()]);
+            let last = fields.pointwise(&pairs[34..], length / 2);
+            assert_eq!(sums, [products.clone(), Vec::new(), last], "{length} {fields:?}");
+            let sums = fields.sums(&[terms.clone(), terms[5..].to_vec()]);
+            assert_eq!(sums, [combination.clone(), fields.combination(&terms[5..])]);
         }
     }
 }
