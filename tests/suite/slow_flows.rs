@@ -260,7 +260,8 @@ fn order_zero_is_checked() {
     let wrong = Some(ExpandError::NotTheFrequency { unknown: 0 });
     assert_eq!(refused(&algebra(&[2], q(1, 1)), primary()), wrong);
     let strong = oscillator(0, 1, eps(x(0).pow(3)) - p("F") * cos(q(1, 1)));
-    assert_eq!(refused(&algebra(&[1], q(1, 1)), strong), wrong);
+    let forced = Some(ExpandError::ForcedAtResonance { unknown: 0 });
+    assert_eq!(refused(&algebra(&[1], q(1, 1)), strong), forced);
     let cubic = oscillator(0, 1, x(0).pow(3));
     assert_eq!(refused(&algebra(&[1], q(1, 1)), cubic), wrong);
 }

@@ -38,6 +38,7 @@ pub mod setting;
 mod solution;
 mod solution_function;
 pub mod source;
+pub mod tongue;
 mod words;
 
 pub use displacements::{Displacement, Displacements};

@@ -35,6 +35,12 @@ pub enum ExpandError {
         /// j, from 0.
         unknown: usize,
     },
+    /// At order zero a force has the frequency of this unknown.
+    #[error("without the small parameter a force drives unknown {} at its own frequency: there the motion grows without bound", unknown + 1)]
+    ForcedAtResonance {
+        /// j, from 0.
+        unknown: usize,
+    },
     /// No value of the parameter that is sought removes the resonant part of this order.
     #[error("order {order}: no value of the parameter that is sought keeps the motion periodic")]
     NotBalanced {

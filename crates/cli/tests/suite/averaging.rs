@@ -152,3 +152,24 @@ fn refusals_have_their_reason() {
     assert_eq!(output.status.code(), Some(3));
     assert!(String::from_utf8(output.stderr).unwrap().contains("resonance"));
 }
+
+/// Where limit cycles are not listed it is said why: irrational coefficients, a symbol; and of a double zero, by `evaluate` too.
+#[test]
+fn cycles_that_are_not_listed_are_explained() {
+    let free = ["--normalisation", "free", "--order", "1"];
+    let told = |equation: &str| program::text(&[&["derive", equation][..], &free].concat());
+    for (equation, words) in [
+        ("x'' + 2*x + eps*x'*(x^2 - 1)", "with the Floquet exponent A_1'(a_0)*eps + ..."),
+        ("x'' + x + eps*(x^2*x' - x') + eps*x(t - 1)", "for the coefficients are irrational"),
+        ("x'' + omega0^2*x + eps*x'*(x^2 - 1)", "not listed without the values of omega0"),
+    ] {
+        let text = told(equation);
+        assert!(text.contains(words), "{equation}: {text}");
+    }
+    assert!(!told("x'' + 2*x + eps*x'").contains("imit cycle"));
+    let double = "x'' + x + eps*x'*(x^4 - 4*x^2 + 2)";
+    let set = [&["evaluate", double][..], &free, &["--set", "eps=1/10"]].concat();
+    let output = program::lindstedt(&set);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("at the amplitude 2 the leading rate has a multiple zero"), "{said}");
+}

@@ -8,6 +8,7 @@
 //! Nothing decides here whether the frequencies are independent over Q: they are taken to be. Where they are not,
 //! a divisor contains zero, and that ends the derivation.
 
+use super::ResonanceError;
 use super::modes::{Matrix, Spectrum, inverted, product};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::univariate::{positive_roots, refined, simple_and_multiple};
@@ -57,8 +58,13 @@ pub(super) struct Enclosed {
 const BITS: u32 = 512;
 
 impl AlgebraicModes {
-    /// Nothing where a square is not positive, or no simple root.
-    pub(super) fn of(mass: &Matrix, stiffness: &Matrix) -> Option<Self> {
+    /// The modes; of squares that are no simple roots, or not positive, why there are none.
+    pub(super) fn of(mass: &Matrix, stiffness: &Matrix) -> Result<Self, ResonanceError> {
+        let found = Self::unless_refused(mass, stiffness);
+        found.unwrap_or(Err(ResonanceError::NoRationalForm))
+    }
+
+    fn unless_refused(mass: &Matrix, stiffness: &Matrix) -> Option<Result<Self, ResonanceError>> {
         let n = mass.len();
         let mass_inverse = inverted(mass)?;
         let matrix = product(&mass_inverse, stiffness);
@@ -76,11 +82,24 @@ impl AlgebraicModes {
         // Cayley and Hamilton: the last is zero.
         adjugate.pop();
         polynomial.reverse();
-        let [_, multiple] = simple_and_multiple(&polynomial);
-        if multiple.len() > 1 || polynomial[0].is_zero() {
+        let [simple, multiple] = simple_and_multiple(&polynomial);
+        let roots = positive_roots(&polynomial);
+        let signs =
+            (0..).zip(&polynomial).map(|(k, c)| if k % 2 == 0 { c.clone() } else { -c.clone() });
+        let mirrored: Vec<Rational> = signs.collect();
+        let negative = positive_roots(&mirrored);
+        let zero = usize::from(polynomial[0].is_zero());
+        // Each root of the polynomial is one of either factor.
+        if roots.len() + negative.len() + zero < simple.len() + multiple.len() - 2 {
+            return Some(Err(ResonanceError::Flutter));
+        }
+        if let Some(root) = negative.last() {
+            let square = format!("{:.6}", -refined(&mirrored, root, 64)[0].to_f64());
+            return Some(Err(ResonanceError::NoOscillation { square }));
+        }
+        if multiple.len() > 1 || zero > 0 {
             return None;
         }
-        let roots = positive_roots(&polynomial);
         let (mass_inverse, stiffness) = (mass_inverse, stiffness.clone());
         let pivots = Vec::new();
         let mut modes = Self { polynomial, roots, adjugate, pivots, mass_inverse, stiffness };
@@ -91,7 +110,7 @@ impl AlgebraicModes {
             places.into_iter().find(|[i, j]| !adjugate[*i][*j].contains_zero())
         };
         modes.pivots = modes.roots.iter().map(pivot).collect::<Option<_>>()?;
-        (modes.roots.len() == n).then_some(modes)
+        (modes.roots.len() == n).then_some(Ok(modes))
     }
 
     fn square(&self, root: &[Rational; 2], balls: Balls) -> Ball {

@@ -1,5 +1,6 @@
 //! Why equations have no slow flow.
 
+use rug::Rational;
 use thiserror::Error;
 
 /// Why averaging at resonance does not take equations.
@@ -90,6 +91,24 @@ pub enum ResonanceError {
         /// The order that fixes the start.
         decided: usize,
     },
+    /// No value of the parameter that is sought balances an order of a motion of this amplitude.
+    #[error(
+        "order {order}: at the amplitude {amplitude} no value of the parameter that is sought keeps the motion periodic"
+    )]
+    NotBalanced {
+        /// The order.
+        order: usize,
+        /// The amplitude.
+        amplitude: Rational,
+    },
+    /// The parameter that is sought is one of the frequency of a force.
+    #[error(
+        "the frequency of a force depends on {name}, which is sought: a motion is followed at one frequency"
+    )]
+    SoughtFrequency {
+        /// The parameter.
+        name: String,
+    },
     /// A parameter that is sought and does not occur.
     #[error("{name} is sought, but does not occur in the equation")]
     NotSought {
@@ -174,6 +193,11 @@ pub enum ResonanceError {
         /// The square.
         square: String,
     },
+    /// nu^2 is complex.
+    #[error(
+        "the linear part does not oscillate: squares of frequencies are not real, a motion grows without the small terms (flutter)"
+    )]
+    Flutter,
     /// The linear part has no complete set of modes.
     #[error("the linear part is not diagonalisable")]
     NotDiagonalisable,

@@ -11,7 +11,7 @@
 mod start;
 
 use super::flow::{Symbols, compiled_form, wave_of};
-use super::forces::divisor;
+use super::forces::{divisor, is_wave};
 use super::modes::modes_refused;
 use super::print::print_powers;
 use super::system::refuse_delays;
@@ -139,7 +139,7 @@ impl Binding<Amplitudes<Integers>> for Seeking<'_> {
 /// Exact; every order is substituted back. Cost: for Mathieu's equation O(N^3) products of numbers.
 ///
 /// # Errors
-/// [`ResonanceError`] for what is no such system; [`ExpandError::NotBalanced`] where no value keeps a motion
+/// [`ResonanceError`] for what is no such system; [`ResonanceError::NotBalanced`] where no value keeps a motion of this amplitude
 /// periodic; [`Error::SymbolTaken`] for a symbol named like one of the orders, x_1.
 pub fn sought(
     problem: &Problem,
@@ -147,11 +147,32 @@ pub fn sought(
     settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Sought, Error> {
+    let amplitude = settings.parameters.get("amplitude").and_then(|a| a.as_rational().cloned());
+    let amplitude = amplitude.unwrap_or_else(|| 1.into());
+    let found = sought_at(&amplitude, problem, name, settings, observer);
+    found.map_err(|error| match error {
+        Error::Expand(ExpandError::NotBalanced { order }) => {
+            ResonanceError::NotBalanced { order, amplitude }.into()
+        }
+        error => error,
+    })
+}
+
+fn sought_at(
+    amplitude: &Rational,
+    problem: &Problem,
+    name: &str,
+    settings: &AveragingSettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<Sought, Error> {
+    let occurs = |e: &Expression| e.parameters().iter().any(|known| known == name);
+    if problem.equation.nodes().any(|e| is_wave(e) && occurs(e)) {
+        return Err(ResonanceError::SoughtFrequency { name: name.to_owned() }.into());
+    }
     let (start, equation) = beginning(problem, name, settings)?;
     let mut given = settings.parameters.clone();
     given.remove(name);
-    let amplitude = given.remove("amplitude");
-    let amplitude = amplitude.and_then(|a| a.as_rational().cloned()).unwrap_or_else(|| 1.into());
+    given.remove("amplitude");
     let cards = |known: &str| value(problem, &given, known).filter(|_| known != name);
     let equations = [equation];
     refuse_delays(&equations, Names(problem))?;
@@ -201,12 +222,12 @@ pub fn sought(
         names: Names(problem),
     };
     let (order, largest) = (settings.order, algebra.largest_exponent());
-    let Starts { list, order: decided, all } = task.starts(harmonic, &amplitude, observer)?;
+    let Starts { list, order: decided, all } = task.starts(harmonic, amplitude, observer)?;
     found.all = all;
     for start in list {
         let wave = algebra.wave(0, harmonic);
         let [cos, sin] = wave.ok_or(ResonanceError::TooHigh { order, largest })?;
-        let [re, im] = start.direction.each_ref().map(|part| Rational::from(part * &amplitude));
+        let [re, im] = start.direction.each_ref().map(|part| Rational::from(part * amplitude));
         let generating = algebra.sub(&algebra.scale(&cos, &re), &algebra.scale(&sin, &im));
         found.branches.push(task.branch(start, generating, observer).map_err(
             |error| match error {

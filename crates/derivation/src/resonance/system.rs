@@ -247,7 +247,7 @@ impl System {
         let (mut modes, algebraic) = match spectrum(mass, stiffness) {
             Err(ResonanceError::NoRationalForm) => {
                 enclosed()?;
-                let found = AlgebraicModes::of(mass, stiffness).ok_or_else(irrational)?;
+                let found = AlgebraicModes::of(mass, stiffness)?;
                 (found.spectrum().ok_or_else(irrational)?, Some(found))
             }
             other => (other?, None),

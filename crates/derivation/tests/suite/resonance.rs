@@ -337,8 +337,14 @@ fn edges_of_the_first_tongues() {
 #[test]
 fn refusals_of_several_unknowns() {
     use ResonanceError::{
-        NearMiss, NoOscillation, NoRationalForm, NotDiagonalisable, UndecidedDivisor,
+        Flutter, NearMiss, NoOscillation, NoRationalForm, NotDiagonalisable, UndecidedDivisor,
     };
+    // 1 + i and 1 - i; (1 - sqrt 5)/2; of four the double ones above beside complex ones.
+    assert_eq!(refused("x'' + x - y; y'' + y + x"), Flutter);
+    let NoOscillation { square } = refused("x'' + x - y; y'' - x") else { panic!("no saddle") };
+    assert_eq!(square, "-0.618034");
+    let both = "x'' + 2*x - y; y'' + y - x; z'' + z - w; w'' + w + z";
+    assert_eq!(refused(both), Flutter);
     // Twice the square (3 - sqrt 5)/2: shapes are any of a plane.
     let double = "x'' + 2*x - y + eps*x^3; y'' + y - x; z'' + 2*z - w; w'' + w - z";
     assert_eq!(refused(double), NoRationalForm);

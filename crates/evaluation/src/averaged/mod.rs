@@ -92,6 +92,10 @@ pub struct Motion {
     /// The limit cycles whose amplitude does not vanish with the small parameter, by increasing amplitude; nothing
     /// where the coefficients are irrational, no rate depends on a, or a wall is near.
     pub cycles: Option<Vec<SummedCycle>>,
+    /// Amplitudes at multiple zeros of the leading rate, where whether there are cycles is not decided.
+    pub degenerate: Vec<Number>,
+    /// Whether there may be cycles that are not looked for: the coefficients are irrational.
+    pub not_looked_for: bool,
     full: Truncated,
     rest: Rest,
     /// What the start may be off by, where it was computed from x and x'.
@@ -173,8 +177,16 @@ impl Motion {
         let found = numbers(problem, &averaging, bits, &mut |progress| work.goes_on(progress))?;
         let float = Float::with_val(bits, small.ball(Balls::new(bits)).midpoint());
         let cycles = found.cycles.as_ref().filter(|_| problem.impact.is_none());
+        let degenerate = cycles.map_or_else(Vec::new, |found| found.degenerate.clone());
         let cycles = cycles.map(|found| cycles::summed(found, &small, digits, &work.stop));
-        Ok(Self { cycles, ..Self::of_numbers(problem, (start, digits), &found, &float, at)? })
+        let drifts = found.amplitude_rate.iter().flatten().any(|(exponent, _)| *exponent != 1);
+        let not_looked_for = drifts && found.cycles.is_none() && problem.impact.is_none();
+        Ok(Self {
+            cycles,
+            degenerate,
+            not_looked_for,
+            ..Self::of_numbers(problem, (start, digits), &found, &float, at)?
+        })
     }
 
     fn of_numbers(
@@ -225,6 +237,8 @@ impl Motion {
             has_wall: problem.impact.is_some(),
             moments: None,
             cycles: None,
+            degenerate: Vec::new(),
+            not_looked_for: false,
             full,
             rest,
             start_error,

@@ -93,8 +93,8 @@ impl<E> SlowFlow<E> {
 /// products of constants (`linear`).
 ///
 /// # Errors
-/// [`ExpandError::NotTheFrequency`] where order zero is not the oscillator of the algebra or the force at
-/// order zero is in resonance; [`ExpandError::Phase`] where the coefficients cannot be divided.
+/// [`ExpandError::NotTheFrequency`] where order zero is not the oscillator of the algebra, [`ExpandError::ForcedAtResonance`] where the
+/// force at order zero is in resonance; [`ExpandError::Phase`] where the coefficients cannot be divided.
 ///
 /// # Example
 /// The primary resonance of Duffing's oscillator, x'' + x + eps (x^3 - F cos t) = 0:
@@ -302,7 +302,7 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
             let phase = |source| ExpandError::Phase { order: 0, source };
             let split = algebra.split(j, &self.linear[j], &force).map_err(phase)?;
             if !algebra.may_vanish(&split.flow) {
-                return Err(ExpandError::NotTheFrequency { unknown: j });
+                return Err(ExpandError::ForcedAtResonance { unknown: j });
             }
             self.amend(j, 0, &split.response, &algebra.zero())?;
         }

@@ -84,6 +84,16 @@ impl Oscillator {
             (_, None) => Some("stopped; orders or times not reached are missing"),
         };
         remarks.extend(said.map(|words| Remark(words.to_owned())));
+        remarks.extend(value.degenerate.iter().map(|amplitude| {
+            let a = amplitude.exact.as_ref().unwrap_or(&amplitude.decimal);
+            Remark(format!(
+                "at the amplitude {a} the leading rate has a multiple zero: whether cycles are there, and how many, it does not decide"
+            ))
+        }));
+        if value.not_looked_for {
+            let words = "limit cycles are not listed: the coefficients are irrational";
+            remarks.push(Remark(words.to_owned()));
+        }
         let at = value.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
         let header = self.header(at, Some(value.order), "averaging", start);
         Ok(Answer { header, value, standing, remarks })

@@ -52,6 +52,11 @@ impl Refusal for ExpandError {
             Self::Phase { source: PhaseError::NearMiss { .. }, .. } => {
                 (NoAnswer, "near-miss", AT_RESONANCE)
             }
+            Self::ForcedAtResonance { .. } => (
+                NoAnswer,
+                "resonance",
+                "a force at a resonance needs the factor of the small terms: eps*F*cos(omega*t), which `lindstedt respond` answers",
+            ),
             Self::NotOneClock { .. } => (NoAnswer, "no-such-route", "use --route driver"),
             Self::Phase { .. } => {
                 (Undecided, "could-not-decide", "the orders below this one can be derived")
@@ -118,6 +123,16 @@ impl Refusal for ResonanceError {
             }
             Self::NoStart { .. } => (Usage, "no-value-set", "--set NAME=VALUE"),
             Self::Mixture { .. } | Self::Turns { .. } => (NoAnswer, "no-expansion", ALL),
+            Self::NotBalanced { .. } => (
+                NoAnswer,
+                "no-expansion",
+                "of an equation that is not linear --set amplitude=VALUE for another; `lindstedt respond` has the steady amplitudes",
+            ),
+            Self::SoughtFrequency { .. } => (
+                NoAnswer,
+                "no-method",
+                "--set its value, and --unknown of a factor in the equation, as of x: in the time tau = omega*t that is a/omega^2",
+            ),
             Self::SoughtOfSeveral { .. } | Self::ForcedMode => (NoAnswer, "no-method", ""),
             Self::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
             Self::InternalResonance { .. } => {
@@ -138,7 +153,7 @@ impl Refusal for ResonanceError {
                 "irrational",
                 "a fraction near it, with the difference as eps*sigma*x; `lindstedt simulate` takes it as it is",
             ),
-            Self::NoOscillation { .. } => (NoAnswer, "no-expansion", ""),
+            Self::NoOscillation { .. } | Self::Flutter => (NoAnswer, "no-expansion", ""),
             Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),
             Self::NearMiss { .. } => (NoAnswer, "near-miss", AT_RESONANCE),
             Self::TooManySymbols { .. } => (NoAnswer, "too-many-symbols", "--set some of them"),

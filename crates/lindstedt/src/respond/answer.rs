@@ -94,6 +94,9 @@ pub struct Point {
     /// Without a force: eta'.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency: Option<Estimate>,
+    /// As of a [`State`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub near_resonance: Option<Estimate>,
 }
 
 /// A point at which states change.
@@ -136,10 +139,14 @@ pub struct State {
     pub amplitudes: Vec<Number>,
     /// phi_j in (-pi, pi]; nothing where the amplitude may be zero.
     pub phases: Vec<Option<Number>>,
-    /// Whether it is stable; nothing where that is neutral.
+    /// Whether it is stable; nothing where that is neutral, or not decided beside a resonance.
     pub stable: Option<bool>,
     /// The Floquet exponents per unit of t, to the order kept.
     pub exponents: Vec<[Estimate; 2]>,
+    /// Of a state that is stable but for an internal resonance, which the slow flow does not have: the largest real part of an
+    /// exponent with it, in or beside a tongue of which the leading order alone is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub near_resonance: Option<Estimate>,
     /// Without a force: eta'; nothing at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency: Option<Estimate>,
@@ -172,15 +179,19 @@ pub struct Reading {
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Destination {
-    /// `steady`; `moving`, near a cycle of the slow flow or very slowly; `away`.
+    /// `steady`; `cycle`, the amplitudes go round a cycle of the slow flow; `moving`, where the time looked at does not
+    /// tell; `away`.
     pub fate: &'static str,
     /// Which state of the list, from 0.
     pub state: Option<usize>,
     /// The amplitudes at the end.
     pub amplitudes: Vec<Estimate>,
-    /// Whether the state is stable and starts that differ in one coordinate by the terms of order eps go there, too: the start is
-    /// known to leading order.
+    /// Whether the start lies in the box, the state is stable and starts that differ in one coordinate by the terms of order eps go
+    /// there, too: the start is known to leading order.
     pub decided: bool,
+    /// Why it is not decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<&'static str>,
 }
 
 /// A curve in the plane of two parameters.

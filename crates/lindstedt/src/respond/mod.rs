@@ -13,7 +13,7 @@ use crate::{Answer, Error, Exact, Oscillator, Remark, Standing, Work};
 pub use answer::{
     Branch, Change, Corner, Curve, Destination, Estimate, Point, Reading, Response, State, States,
 };
-use lindstedt_orbit::steady::{self, Fate, Plane, Survey, settle};
+use lindstedt_orbit::steady::{self, Course, Fate, Plane, Survey, settle};
 use std::time::Instant;
 use subject::Subject;
 
@@ -84,8 +84,10 @@ const LEAST_STEPS: usize = 60;
 const MOST_POINTS: usize = 100_000;
 /// Values at which the equation is integrated along a sweep.
 const MOST_FOLLOWED: usize = 101;
-/// How long a start state is followed, in eps t.
+/// How long a start state is followed at least, in eps t.
 const LONG: f64 = 1e4;
+/// And so many times as long as the slowest motion beside a state takes to fall by a factor e.
+const DECAY: f64 = 40.0;
 
 impl Oscillator {
     /// The steady states of the slow flow at resonance, which are the periodic responses: with a `sweep` the branches
@@ -237,14 +239,15 @@ impl Subject<'_> {
         Ok(response)
     }
 
-    fn course(&self, samples: &[Exact], axis: &Axis, reach: f64) -> Result<steady::Course, Error> {
-        Ok(steady::Course {
+    fn course(&self, samples: &[Exact], axis: &Axis, reach: f64) -> Result<Course, Error> {
+        Ok(Course {
             parameter: 0,
             range: ends(samples)?,
             second: None,
+            positive: None,
             unknowns: 0,
             reach,
-            step: 1.0 / axis.values.len().max(LEAST_STEPS) as f64,
+            step: step(axis),
             most: MOST_POINTS,
             stop: self.work.stop.clone(),
         })
@@ -264,7 +267,11 @@ impl Subject<'_> {
             flow: &self.rotating.flow,
             values,
             open: [a, b],
-            course: self.course(&samples[0], first, reach)?,
+            course: Course {
+                // As for the one of the two with more values, whichever is named first.
+                step: [first, second].map(step).into_iter().fold(f64::INFINITY, f64::min),
+                ..self.course(&samples[0], first, reach)?
+            },
             second: ends(&samples[1])?,
             samples,
             limits: self.limits(reach),
@@ -325,8 +332,11 @@ impl Subject<'_> {
         let system = self.rotating.flow.system(&self.values([None, None]));
         let reach = response.amplitude_limit.value / 2.0;
         let states = response.states.first().map_or(&[][..], |states| &states.list);
+        let decays = states.iter().flat_map(|state| &state.exponents).map(|[re, _]| re.value.abs());
+        let slowest = decays.filter(|rate| *rate > 0.0).fold(f64::INFINITY, f64::min);
+        let long = LONG.max(DECAY * self.rate(None) / slowest);
         let goes = |start: &[f64]| {
-            let fate = settle(&system, start, reach, LONG, &self.work.stop);
+            let fate = settle(&system, start, reach, long, &self.work.stop);
             match fate {
                 Fate::Steady(w) => {
                     let near = |state: &State| {
@@ -334,6 +344,7 @@ impl Subject<'_> {
                     };
                     ("steady", states.iter().position(near), self.amplitudes(&w))
                 }
+                Fate::Cycle(w) => ("cycle", None, self.amplitudes(&w)),
                 Fate::Moving(w) => ("moving", None, self.amplitudes(&w)),
                 Fate::Away => ("away", None, Vec::new()),
             }
@@ -345,13 +356,25 @@ impl Subject<'_> {
             start[k / 2] += if k % 2 == 0 { moved } else { -moved };
             start
         });
-        let stable = state.is_none_or(|state| states[state].stable == Some(true));
-        let decided = stable
-            && neighbours.into_iter().all(|start| {
+        // Beyond the box the slow flow says nothing of the oscillator; that of a larger box that was asked for is trusted.
+        let trusted = self.amplitude.map_or(reach, |a| reach.max(a / 2.0));
+        let outside = |w: &[f64]| w.chunks_exact(2).any(|w| w[0].hypot(w[1]) > trusted);
+        let goes_elsewhere = || {
+            neighbours.into_iter().any(|start| {
                 let (other, place, _) = goes(&start);
-                (other, place) == (fate, state)
-            });
-        Ok(Destination { fate, state, amplitudes, decided })
+                (other, place) != (fate, state)
+            })
+        };
+        let unstable = state.is_some_and(|state| states[state].stable != Some(true));
+        let doubt = match fate {
+            _ if outside(&start) => Some("the start lies outside the box"),
+            "moving" => Some("the amplitudes still move"),
+            "away" => Some("the amplitudes leave the box"),
+            _ if unstable => Some("the state is not stable"),
+            _ if goes_elsewhere() => Some("starts that differ by terms of order eps go elsewhere"),
+            _ => None,
+        };
+        Ok(Destination { fate, state, amplitudes, decided: doubt.is_none(), doubt })
     }
 }
 
@@ -367,6 +390,11 @@ fn missing(value: &Response) -> Vec<Remark> {
         remarks.push(Remark(text.to_owned()));
     }
     remarks
+}
+
+/// The longest step of a branch, in parts of the range.
+fn step(axis: &Axis) -> f64 {
+    1.0 / axis.values.len().max(LEAST_STEPS) as f64
 }
 
 /// The least and the largest of some values.

@@ -1,7 +1,7 @@
 //! What is shown of the states, branches and changes of a subject.
 
 use super::answer::{Branch, Change, Corner, Curve, Estimate, Point, State, States};
-use super::subject::Subject;
+use super::subject::{Subject, doubles};
 use crate::{Exact, Number, Status};
 use lindstedt_number::ball::Balls;
 use lindstedt_number::certified;
@@ -27,21 +27,32 @@ impl Subject<'_> {
     }
 
     pub(super) fn shown_branch(&self, branch: &steady::Branch) -> Branch {
-        let point = |point: &steady::Point| {
+        let values = self.values([None, None]);
+        let (systems, open) = (self.tongues.systems(&values), self.open()[0]);
+        let mut values = doubles(&values);
+        let mut point = |point: &steady::Point| {
             let (value, w) = point.at.split_last().unwrap_or((&0.0, &[]));
             let phase = |w: &[f64]| Estimate { value: w[1].atan2(w[0]) };
             let rate = self.rate(Some(*value));
+            let mut stable = self.is_stable(point, rate);
+            open.and_then(|open| values.get_mut(open)).into_iter().for_each(|it| *it = *value);
+            let near_resonance = self.beside(&mut stable, &systems, &values, &point.at);
             Point {
                 value: Estimate { value: self.shown_value(*value) },
                 amplitudes: self.amplitudes(w),
                 phases: w.chunks_exact(2).map(phase).collect(),
-                stable: self.is_stable(point, rate),
+                stable,
                 exponents: self.exponents(point, rate),
                 frequency: None,
+                near_resonance,
             }
         };
         let steady::Branch { points, closed, complete } = branch;
-        Branch { points: points.iter().map(point).collect(), closed: *closed, complete: *complete }
+        Branch {
+            points: points.iter().map(&mut point).collect(),
+            closed: *closed,
+            complete: *complete,
+        }
     }
 
     pub(super) fn shown_change(&self, change: &Located) -> Option<Change> {
@@ -84,11 +95,13 @@ impl Subject<'_> {
         let mut list: Vec<State> = Vec::new();
         let rate = self.rate(sample.map(Exact::to_f64));
         let values = self.values([sample, None]);
+        let systems = self.tongues.systems(&values);
         for zero in &found.zeros {
             let point = steady::state_at(system, &zero.middle());
             let polar: Option<Vec<_>> = zero.enclosure.chunks_exact(2).map(polar).collect();
             let (amplitudes, phases) = polar?.into_iter().unzip();
-            let stable = self.is_stable(&point, rate);
+            let mut stable = self.is_stable(&point, rate);
+            let near_resonance = self.beside(&mut stable, &systems, &doubles(&values), &point.at);
             let exponents = self.exponents(&point, rate);
             let (drift, frequency) = (Vec::new(), None);
             let growth = self.growth(&values, &point.at);
@@ -98,6 +111,7 @@ impl Subject<'_> {
                 phases,
                 stable,
                 exponents,
+                near_resonance,
                 frequency,
                 drift,
                 at,

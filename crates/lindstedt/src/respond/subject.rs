@@ -7,8 +7,10 @@ use crate::grid::Axis;
 use crate::motion::Harmonics;
 use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Oscillator, Remark, SlowFlow, Work};
+use lindstedt_derivation::resonance::ResonanceError;
 use lindstedt_equation::Expression;
 use lindstedt_evaluation::rotating::{FAMILY, NoFrame, Rotating, forced_part, rotating};
+use lindstedt_evaluation::tongue::Tongues;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::interval::Interval;
 use lindstedt_orbit::steady::{self, Course, Limits, System, Value, all_zeros, bound, follow};
@@ -34,7 +36,9 @@ pub(super) struct Subject<'a> {
     /// omega = factor (Omega + eps sigma), where sigma varies in the place of omega.
     pub(super) factor: Option<Rational>,
     pub(super) small: Option<Rational>,
-    amplitude: Option<f64>,
+    pub(super) amplitude: Option<f64>,
+    /// Internal resonances beside the slow flow.
+    pub(super) tongues: Tongues,
 }
 
 /// The flow in the frame where it rests: of modes that a resonance couples, and whole where something varies.
@@ -44,7 +48,7 @@ fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<R
         return Err(not_whole());
     }
     if found.fixed == 0 && found.unforced().is_none() {
-        return Err(uncoupled(order, slow.system.forces.is_empty()));
+        return Err(uncoupled(slow, order));
     }
     Ok(found)
 }
@@ -100,9 +104,11 @@ impl<'a> Subject<'a> {
                 return Err(moving_frequency(name));
             } else if let Ok(slow) = &slow {
                 let rate = independent(slow, name);
-                return Err(if rate { no_resonance(name) } else { no_part(name) });
+                let none = || strong_force(&case, axis, work).unwrap_or_else(|| no_resonance(name));
+                return Err(if rate { none() } else { no_part(name) });
             } else if slow.as_ref().is_err_and(|error| is_unset(error, name)) {
-                return Err(no_resonance(name));
+                let strong = strong_force(&case, axis, work);
+                return Err(strong.unwrap_or_else(|| no_resonance(name)));
             }
         }
         let slow = slow.map_err(|error| not_weak(oscillator, error))?;
@@ -112,13 +118,32 @@ impl<'a> Subject<'a> {
             return Err(no_part(name));
         }
         has_numbers(oscillator, &slow)?;
+        Self::of((oscillator, question, work), order, slow, swept, factor)
+    }
+
+    fn of(
+        (oscillator, question, work): (&'a Oscillator, &Respond, &'a Work),
+        order: usize,
+        slow: SlowFlow,
+        swept: [Option<String>; 2],
+        factor: Option<Rational>,
+    ) -> Result<Self, Error> {
+        let small = oscillator.problem().small.to_string();
         let rotating = coupled(&slow, &small, order, question.sweep.is_some())?;
+        let tongues = Tongues::of(&slow, &small, order);
         let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
-        let small = value.as_ref().and_then(Exact::as_rational).cloned();
-        let amplitude = question.amplitude.as_ref().map(Exact::to_f64);
-        let order = order.min(slow.order);
-        let subject =
-            Self { oscillator, work, order, slow, rotating, swept, factor, small, amplitude };
+        let subject = Self {
+            oscillator,
+            work,
+            order: order.min(slow.order),
+            rotating,
+            slow,
+            swept,
+            factor,
+            small: value.as_ref().and_then(Exact::as_rational).cloned(),
+            amplitude: question.amplitude.as_ref().map(Exact::to_f64),
+            tongues,
+        };
         subject.check()?;
         Ok(subject)
     }
@@ -490,22 +515,45 @@ fn no_amplitude(what: &str) -> Error {
     Refused::usage("no-value-set", message, "--set amplitude=1, or --sweep amplitude=0.1..2").into()
 }
 
-fn uncoupled(order: usize, free: bool) -> Error {
-    if free {
+fn uncoupled(slow: &SlowFlow, order: usize) -> Error {
+    if slow.system.forces.is_empty() {
         let message = format!("up to order {order} no resonance ties the phases of the unknowns");
         let hint = "`lindstedt derive --mode 1` has normal modes, `derive --normalisation free` the slow flow; a higher --order";
         return Refused::no_answer("no-response", message, hint).into();
     }
     let message = format!("up to order {order} no resonance couples the force to an amplitude");
-    let hint =
-        "a frequency nearer to a resonance (or the detuning as a parameter), a higher --order";
-    Refused::no_answer("no-response", message, hint).into()
+    let square = slow.system.squares.first().filter(|_| slow.system.algebraic.is_none());
+    let hint = match square.filter(|_| !slow.system.is_exact()) {
+        Some(square) => at_root(&square.to_string()),
+        None => "a frequency nearer to a resonance (or the detuning as a parameter)".to_owned(),
+    };
+    Refused::no_answer("no-response", message, format!("{hint}, a higher --order")).into()
+}
+
+/// How a force beside an irrational frequency is written: no number is at its resonance.
+fn at_root(square: &str) -> String {
+    format!("its frequency as the root with a detuning: cos((sqrt({square}) + eps*sigma)*t)")
 }
 
 fn no_resonance(name: &str) -> Error {
     let message = format!("no value of {name} lies within a tenth of a resonance");
     let hint = "a range about a resonance, or the detuning as a parameter of its own";
     Refused::no_answer("no-response", message, hint).into()
+}
+
+/// The code of a force of order one at a resonance.
+const RESONANT: &str = "resonance";
+/// Values of a frequency at which it is looked for.
+const PROBED: usize = 41;
+
+/// The refusal of a force of order one that a value of its frequency brings beside a resonance.
+fn strong_force(case: &Oscillator, axis: &Axis, work: &Work) -> Option<Error> {
+    use crate::Refusal;
+    let stride = axis.values.len().div_ceil(PROBED).max(1);
+    axis.values.iter().step_by(stride).find_map(|value| {
+        let found = case.clone().with(&axis.name, value.clone()).flow(1, work);
+        found.err().filter(|error| error.code() == RESONANT)
+    })
 }
 
 fn no_polynomial(symbol: &str, name: &str) -> Error {
@@ -523,7 +571,7 @@ fn no_part(name: &str) -> Error {
 fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
     use crate::{Kind, Refusal};
     let (kind, code, hint) = error.parts();
-    if kind != Kind::NoAnswer {
+    if kind != Kind::NoAnswer || code == RESONANT {
         return error;
     }
     let problem = oscillator.problem();
@@ -531,6 +579,13 @@ fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
         true => "`lindstedt threshold` and `lindstedt simulate` take motions beside a saddle",
         false => "`lindstedt evaluate` has the periods of strongly nonlinear motions",
     };
+    if let Error::Derivation(DerivationError::Resonance(ResonanceError::NoRationalModes {
+        squares,
+    })) = &error
+        && !squares.contains(',')
+    {
+        return Refused { code, kind, message: error.to_string(), hint: at_root(squares) }.into();
+    }
     let message = format!("no response from a slow flow: {error}");
     let hint = if hint.is_empty() { other.to_owned() } else { format!("{hint}; {other}") };
     Refused { code, kind, message, hint }.into()

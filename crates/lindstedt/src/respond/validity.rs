@@ -1,10 +1,11 @@
 //! Where the slow flow, whose states are proved, says little of the oscillator.
 
 use super::Respond;
-use super::answer::Response;
+use super::answer::{Estimate, Response};
 use super::subject::{Subject, Values, doubles};
 use crate::{Exact, Remark};
 use lindstedt_evaluation::rotating::{order_sizes, start_error};
+use lindstedt_orbit::steady::System;
 use rug::Rational;
 
 impl Subject<'_> {
@@ -20,6 +21,24 @@ impl Subject<'_> {
         sizes[0] *= self.unit().map_or(1.0, |unit| unit.midpoint().to_f64());
         sizes.retain(|size| *size > 0.0);
         sizes.windows(2).map(|pair| pair[1] / pair[0]).fold(0.0, f64::max)
+    }
+
+    /// Where an internal resonance beside the slow flow may make a state unstable, that is not called stable.
+    pub(super) fn beside(
+        &self,
+        stable: &mut Option<bool>,
+        systems: &[System],
+        values: &[f64],
+        at: &[f64],
+    ) -> Option<Estimate> {
+        if *stable != Some(true) || systems.is_empty() {
+            return None;
+        }
+        let values = &values[..values.len().min(self.slow.system.symbols.len() + 1)];
+        let unit = self.unit().map_or(1.0, |unit| unit.midpoint().to_f64());
+        let found = self.tongues.worst(systems, values, at, unit);
+        *stable = stable.filter(|_| found.is_none());
+        found.map(|value| Estimate { value })
     }
 
     /// By how much a start state of the slow flow may be wrong, as it is known to leading order.
@@ -58,6 +77,26 @@ impl Subject<'_> {
                 self.slow.size(&near.size),
             ))
         });
-        orders.into_iter().chain(missed).collect()
+        orders.into_iter().chain(missed).chain(tongues(value)).collect()
     }
+}
+
+/// What is said of states beside an internal resonance.
+fn tongues(value: &Response) -> Option<Remark> {
+    let states = value.states.iter().flat_map(|states| &states.list);
+    let states: Vec<f64> = states.filter_map(|it| Some(it.near_resonance?.value)).collect();
+    let points = value.branches.iter().flat_map(|branch| &branch.points);
+    let points: Vec<f64> = points.filter_map(|it| Some(it.near_resonance?.value)).collect();
+    let worst = states.iter().chain(&points).copied().reduce(f64::max)?;
+    let along = if points.is_empty() {
+        String::new()
+    } else {
+        format!(" and {} points of branches", points.len())
+    };
+    Some(Remark(format!(
+        "whether {} of the states{along} are stable is not decided: an unknown at rest lies in or beside a tongue of an \
+         internal resonance that the slow flow does not have (real part there {worst:.6} to leading order): write its \
+         frequency as a resonant one and a detuning of order eps",
+        states.len(),
+    )))
 }

@@ -19,6 +19,8 @@ pub struct Course {
     pub range: [f64; 2],
     /// Another variable with a range.
     pub second: Option<(usize, [f64; 2])>,
+    /// Another one, below whose zero the branch ends.
+    pub positive: Option<usize>,
     /// The first so many rows and variables are a vector field: its eigenvalues are the exponents.
     pub unknowns: usize,
     /// The branch ends where the modulus of a pair of unknowns (x_0, x_1), (x_2, x_3), ... exceeds this; their unit, too.
@@ -292,6 +294,11 @@ impl Tracer<'_> {
             && !(low..=high).contains(&state.point.at[other])
         {
             return Some(Some((other, state.point.at[other].clamp(low, high))));
+        }
+        if let Some(other) = course.positive
+            && state.point.at[other] < 0.0
+        {
+            return Some(Some((other, 0.0)));
         }
         (self.beyond(state) > 0.0).then_some(None)
     }

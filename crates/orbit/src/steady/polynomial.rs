@@ -273,6 +273,12 @@ impl System {
         self.rows.iter().map(value).collect()
     }
 
+    /// The derivatives at a point, by rows.
+    #[must_use]
+    pub fn slopes(&self, at: &[f64]) -> Vec<f64> {
+        self.derivatives(at).1
+    }
+
     /// The values and the derivatives, row by row.
     pub(crate) fn derivatives<T: Scalar>(&self, at: &[T]) -> (Vec<T>, Vec<T>) {
         let powers = self.powers(at);

@@ -107,7 +107,17 @@ fn primary_resonance_states() {
 
 fn course(parameter: usize, range: [f64; 2], step: f64) -> Course {
     let stop = Default::default();
-    Course { parameter, range, second: None, unknowns: 2, reach: 2.0, step, most: 20_000, stop }
+    Course {
+        parameter,
+        range,
+        second: None,
+        positive: None,
+        unknowns: 2,
+        reach: 2.0,
+        step,
+        most: 20_000,
+        stop,
+    }
 }
 
 /// The whole curve over s; both folds, where d(F^2)/d(a^2) = 0, proved.

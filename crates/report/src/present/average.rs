@@ -43,10 +43,36 @@ impl Present for Answer<Averaging> {
                 }
             }
         }
-        if let Some(found) = &result.cycles {
-            page = cycles(page, found, &problem.small);
-        }
+        page = match &result.cycles {
+            Some(found) => cycles(page, found, &problem.small),
+            None => not_listed(result).into_iter().fold(page, Document::words),
+        };
         page.words(residual(result))
+    }
+}
+
+/// Why limit cycles are not listed, where there may be some.
+fn not_listed(result: &Averaging) -> Option<String> {
+    let drifts = |terms: &Vec<RateTerm>| terms.iter().any(|term| term.exponent != 1);
+    let order = result.amplitude_rate.iter().position(|terms| !terms.is_empty())?;
+    let free = result.problem.impact.is_none() && !result.between_turning_points();
+    if !free || !result.amplitude_rate.iter().any(drifts) {
+        return None;
+    }
+    match &result.symbols[..] {
+        [] if result.exact => None,
+        [] => {
+            let small = power(&result.problem.small, order as i64, Style::Text);
+            Some(format!(
+                "Limit cycles: not listed, for the coefficients are irrational. At a simple zero a_0 > 0 of A_{order} there is \
+                 one, with the Floquet exponent A_{order}'(a_0)*{small} + ..."
+            ))
+        }
+        names => Some(format!(
+            "Limit cycles: not listed without the values of {}; with rational ones (--set NAME=VALUE) they are, with their \
+             Floquet exponents.",
+            names.join(", ")
+        )),
     }
 }
 

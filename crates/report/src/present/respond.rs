@@ -21,8 +21,8 @@ fn title(answer: &Answer<Response>) -> String {
     format!("{}: steady states{}, order {order}", answer.header.problem, over.unwrap_or_default())
 }
 
-fn word(stable: Option<bool>) -> &'static str {
-    stability_word(stable, "neutral")
+fn word(stable: Option<bool>, near_resonance: Option<Estimate>) -> &'static str {
+    stability_word(stable, if near_resonance.is_some() { "undecided" } else { "neutral" })
 }
 
 fn exponent([re, im]: &[Estimate; 2]) -> String {
@@ -70,7 +70,7 @@ fn state(state: &State, free: bool, drifts: bool) -> Vec<Text> {
     if free {
         cells.push(frequency(state.frequency).into());
     }
-    cells.extend([word(state.stable).into(), exponents.join(", ").into()]);
+    cells.extend([word(state.stable, state.near_resonance).into(), exponents.join(", ").into()]);
     if drifts {
         let rates = state.drift.iter().map(|rate| format!("{:.6}", rate.value));
         cells.push(rates.collect::<Vec<_>>().join(", ").into());
@@ -167,10 +167,10 @@ fn leads_to(to: &Destination) -> String {
     let words = match (to.fate, to.state) {
         (_, Some(state)) => format!("state {} of the table", state + 1),
         ("steady", None) => "a steady state beyond the box".to_owned(),
-        ("moving", None) => "no steady state: the amplitudes still move".to_owned(),
-        _ => "away".to_owned(),
+        ("cycle", None) => "no steady state: the amplitudes go round a cycle".to_owned(),
+        _ => return format!("not known: {}", to.doubt.unwrap_or_default()),
     };
-    words + if to.decided { "" } else { "; starts that differ by terms of order eps go elsewhere" }
+    words + &to.doubt.map_or_else(String::new, |doubt| format!("; not decided: {doubt}"))
 }
 
 fn corners(value: &Response) -> impl Iterator<Item = (&'static str, &Corner)> {
@@ -323,9 +323,10 @@ impl Present for Answer<Response> {
         for j in 0..value.turns.len() {
             let colour = colours::CYCLE[j % colours::CYCLE.len()];
             for branch in &value.branches {
-                for (stable, part) in parts(&branch.points) {
-                    let mark = if stable == Some(false) { Mark::Dashed(2) } else { Mark::Line(2) };
-                    let name = format!("{}{}", word(stable), index(value, j).replace('_', " "));
+                for (kind, part) in parts(&branch.points) {
+                    let whole = matches!(kind, "stable" | "neutral");
+                    let mark = if whole { Mark::Line(2) } else { Mark::Dashed(2) };
+                    let name = format!("{kind}{}", index(value, j).replace('_', " "));
                     let points = part.iter().map(|p| (p.value.value, p.amplitudes[j].value));
                     figure = figure.layer(Some(&name), mark, colour, points);
                 }
@@ -382,7 +383,7 @@ impl Present for Answer<Response> {
             let pairs = point.amplitudes.iter().zip(&point.phases);
             cells.extend(pairs.flat_map(|(a, phase)| [digits(a), digits(phase)]));
             cells.extend(free.then(|| point.frequency.as_ref().map_or(String::new(), digits)));
-            cells.push(word(point.stable).to_owned());
+            cells.push(word(point.stable, point.near_resonance).to_owned());
             cells.extend(point.exponents.iter().flatten().map(digits));
             table.row(cells)
         });
@@ -400,16 +401,18 @@ impl Present for Answer<Response> {
 
 /// Runs of points that are equally stable; each begins with the last point of the one before. A single neutral point, a
 /// fold, counts to what is before it.
-fn parts(points: &[Point]) -> Vec<(Option<bool>, &[Point])> {
+fn parts(points: &[Point]) -> Vec<(&'static str, &[Point])> {
     let mut parts = Vec::new();
-    let (mut first, mut own) = (0, None);
+    let (mut first, mut own) = (0, word(None, None));
     for (k, point) in points.iter().enumerate() {
-        let stable = point.stable.or(own);
-        if stable != own && own.is_some() {
+        let kind =
+            Some(word(point.stable, point.near_resonance)).filter(|it| *it != word(None, None));
+        let kind = kind.unwrap_or(own);
+        if kind != own && own != word(None, None) {
             parts.push((own, &points[first..k]));
             first = k - 1;
         }
-        own = stable;
+        own = kind;
     }
     parts.push((own, &points[first..]));
     parts
