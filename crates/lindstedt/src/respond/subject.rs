@@ -35,6 +35,8 @@ pub(super) struct Subject<'a> {
     pub(super) factor: Option<Rational>,
     pub(super) small: Option<Rational>,
     amplitude: Option<f64>,
+    /// Boxes looked at by a search.
+    pub(super) boxes: usize,
 }
 
 /// The flow in the frame where it rests: of modes that a resonance couples, and whole where something varies.
@@ -117,8 +119,19 @@ impl<'a> Subject<'a> {
         let small = value.as_ref().and_then(Exact::as_rational).cloned();
         let amplitude = question.amplitude.as_ref().map(Exact::to_f64);
         let order = order.min(slow.order);
-        let subject =
-            Self { oscillator, work, order, slow, rotating, swept, factor, small, amplitude };
+        let boxes = Limits::default().boxes;
+        let subject = Self {
+            oscillator,
+            work,
+            order,
+            slow,
+            rotating,
+            swept,
+            factor,
+            small,
+            amplitude,
+            boxes,
+        };
         subject.check()?;
         Ok(subject)
     }
@@ -303,7 +316,8 @@ impl<'a> Subject<'a> {
     }
 
     pub(super) fn limits(&self, reach: f64) -> Limits {
-        Limits { modulus: Some(reach), stop: self.work.stop.clone(), ..Limits::default() }
+        let (modulus, stop) = (Some(reach), self.work.stop.clone());
+        Limits { modulus, stop, boxes: self.boxes, ..Limits::default() }
     }
 
     pub(super) fn empty(&self, reach: f64, complete: bool) -> Response {
