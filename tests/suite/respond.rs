@@ -463,7 +463,7 @@ fn remainders_of_six_resonances() {
         // Primary, principal parametric, subharmonic 1/3, superharmonic 3, lock-in, one to two.
         ("x'' + x + eps*(3/5*x + 2/7*x' + x^3) = eps*cos(t)/2", 3),
         ("x'' + x + eps*(x'/5 + x^3 + x*cos(2*t)) = 0", 3),
-        ("x'' + x + eps*(x^3 + x'/5) = cos(3*t)", 3),
+        ("x'' + x + eps*(x^3 + x'/20) = 5*cos((3 + 2*eps)*t)", 3),
         ("x'' + x + eps*(x^3 + x'/5) = cos(t/3)", 3),
         ("x'' + x = eps*(1 - x^2)*x' + eps*cos(t)", 3),
         ("x'' + x + eps*x*y = 0; y'' + 4*y + eps*x^2 = 0", 4),
@@ -475,6 +475,40 @@ fn remainders_of_six_resonances() {
             let found = case.verify(&question, &Work::default()).unwrap().value;
             let slope = found.observed_order.unwrap();
             assert!((slope - order as f64 - 1.0).abs() < 0.1, "{equation}, order {order}: {slope}");
+            let steady = found.steady.unwrap();
+            let slopes: Vec<_> = steady.states.iter().filter_map(|it| it.observed_order).collect();
+            let right = slopes.iter().filter(|slope| (*slope - order as f64).abs() < 0.1).count();
+            // To order four nothing is left above the error of the integration.
+            let any = right > 0 || order == 4;
+            assert!(right == slopes.len() && any, "{equation}, order {order}: {steady:?}");
+        }
+    }
+}
+
+/// Motions that lock and normal modes against periodic orbits of the equations: amplitudes to O(eps^N), frequencies to one order more.
+#[test]
+fn free_motions_against_periodic_orbits() {
+    let pair = "x'' + x = eps*((1 - x^2)*x' + (y' - x')/5); y'' + (1 + eps/10)*y = eps*((1 - y^2)*y' + (x' - y')/5)";
+    let spring = "x'' + x + eps*(x*y + x^3/5); y'' + 4*y + eps*x^2/2";
+    for (equation, states) in [(pair, 4), (spring, 3)] {
+        let case = Oscillator::parse(equation).unwrap();
+        for order in 1..=3 {
+            let small = [20, 40, 80].map(|n| Rational::from((1, n))).to_vec();
+            let question = Verify { order, small, samples: 4, ..Verify::default() };
+            let found = case.verify(&question, &Work::default()).unwrap().value.steady.unwrap();
+            assert_eq!(found.states.len(), states);
+            for state in &found.states {
+                let slope = state.observed_order;
+                // The second unknown alone moves as a linear one: nothing is left to differ.
+                let alone = state.amplitudes[0].value == 0.0;
+                assert!(
+                    alone || (slope.unwrap() - order as f64).abs() < 0.15,
+                    "{order}: {state:?}"
+                );
+                let [a, b] = [1, 2].map(|k| state.table[k].frequency.unwrap().value);
+                let resolved = b > 1e-12;
+                assert!(!resolved || (a / b).log2() > order as f64 + 0.6, "{order}: {state:?}");
+            }
         }
     }
 }

@@ -23,6 +23,9 @@
 //!   A wall takes no part: the expansion is that of the flight;
 //! - slow flow (averaging at resonance): the same with z_j(0) = a/2 in place of a and psi, for all unknowns
 //!   at once, those of the modes where the linear part couples them.
+//!
+//! The steady states of a slow flow are compared with the periodic orbits of the equation as well: over a time of order 1/eps
+//! an error of order eps^(N+1) in z' moves them by eps^N.
 
 mod cycle;
 mod drifting;
@@ -30,6 +33,7 @@ mod periodic;
 mod resonant;
 mod run;
 mod sampled;
+mod steady;
 mod verdict;
 
 use crate::refusal::Refused;
@@ -45,6 +49,7 @@ use resonant::Resonant;
 use rug::Rational;
 use run::{Compare, compare_all, with_digits};
 use std::time::Instant;
+pub use steady::{SteadyDifference, SteadyState, SteadyStates};
 pub use verdict::{Comparison, TOLERANCE, Verdict, Verification};
 
 /// What to verify.
@@ -246,10 +251,12 @@ impl Oscillator {
     }
 
     fn resonant(&self, question: &Verify, work: &Work) -> Result<Verification, Error> {
-        self.free(question, work, &|digits| {
+        let mut found = self.free(question, work, &|digits| {
             let expansion = Resonant::new(self, question, digits, &mut |p| work.goes_on(p))?;
             Ok(Box::new(move |value, goes_on| expansion.compare(value, digits, goes_on)))
-        })
+        })?;
+        found.steady = Some(SteadyStates::of(self, question, work));
+        Ok(found)
     }
 
     /// All comparisons of an expansion with free amplitude.

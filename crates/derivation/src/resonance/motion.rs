@@ -191,18 +191,7 @@ impl SlowFlow {
         values: &dyn Fn(&str) -> Option<Rational>,
         amplitude: &Rational,
     ) -> Option<[Motion; 2]> {
-        let beside = self.system.beside.as_ref();
-        let exact = |name: &str| values(name).map(Exact::Rational);
-        let unit = nearby(&self.system.unit_value(&exact, balls())?)?;
-        let symbol = |name: &String| match beside.filter(|beside| beside.symbol == *name) {
-            Some(beside) => Some((&beside.rate - self.system.force()) * &unit / small),
-            None => self.constant(name, values),
-        };
-        let symbols: Vec<_> = self.system.symbols.iter().map(symbol).collect::<Option<_>>()?;
-        let starts = self.system.forces.iter().map(|phase| self.angle(&phase.start, values));
-        let starts = starts.collect::<Option<Vec<_>>>()?;
-        let starts = Some(starts).filter(|all| all.iter().any(|start| !start.contains_zero()));
-        let at = At { flow: self, small, symbols, unit, starts };
+        let at = self.at(small, values)?;
         let unknowns = self.unknowns();
         let mut names: Vec<String> =
             (1..=unknowns).flat_map(|j| [format!("u_{j}"), format!("v_{j}")]).collect();
@@ -239,6 +228,36 @@ impl SlowFlow {
             start: positions.into_iter().zip(velocities).flat_map(|(x, v)| [x, v]).collect(),
         };
         Some([Motion { names, rates, start }, full])
+    }
+
+    fn at<'a>(
+        &'a self,
+        small: &'a Rational,
+        values: &dyn Fn(&str) -> Option<Rational>,
+    ) -> Option<At<'a>> {
+        let beside = self.system.beside.as_ref();
+        let exact = |name: &str| values(name).map(Exact::Rational);
+        let unit = nearby(&self.system.unit_value(&exact, balls())?)?;
+        let symbol = |name: &String| match beside.filter(|beside| beside.symbol == *name) {
+            Some(beside) => Some((&beside.rate - self.system.force()) * &unit / small),
+            None => self.constant(name, values),
+        };
+        let symbols: Vec<_> = self.system.symbols.iter().map(symbol).collect::<Option<_>>()?;
+        let starts = self.system.forces.iter().map(|phase| self.angle(&phase.start, values));
+        let starts = starts.collect::<Option<Vec<_>>>()?;
+        let starts = Some(starts).filter(|all| all.iter().any(|start| !start.contains_zero()));
+        Some(At { flow: self, small, symbols, unit, starts })
+    }
+
+    /// eta_l'; nothing where a symbol has no value.
+    #[must_use]
+    pub fn force_rate(
+        &self,
+        l: usize,
+        small: &Rational,
+        values: &dyn Fn(&str) -> Option<Rational>,
+    ) -> Option<Rational> {
+        Some(self.at(small, values)?.force_rate(l))
     }
 
     /// The longest delay, from above.

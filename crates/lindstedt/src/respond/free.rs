@@ -59,7 +59,11 @@ impl Subject<'_> {
             };
             let region =
                 [Interval::new(-1.0, 1.0), Interval::new(-1.0, 1.0), Interval::new(0.0, 1.0)];
-            let limits = Limits { modulus: Some(1.0), boxes: MOST_BOXES, ..self.limits(reach) };
+            let limits = Limits {
+                modulus: Some(1.0),
+                boxes: MOST_BOXES.min(self.boxes),
+                ..self.limits(reach)
+            };
             let found = all_zeros(&flow.system(values), &region, &limits).ok_or(Error::NoValue)?;
             states.boxes += found.boxes;
             states.undecided += found.undecided.len();

@@ -3,6 +3,7 @@
 mod answer;
 mod free;
 mod frequency;
+mod orbit;
 mod shown;
 mod subject;
 mod validity;
@@ -14,6 +15,7 @@ pub use answer::{
     Branch, Change, Corner, Curve, Destination, Estimate, Point, Reading, Response, State, States,
 };
 use lindstedt_orbit::steady::{self, Course, Fate, Plane, Survey, settle};
+pub(crate) use orbit::Beside;
 use std::time::Instant;
 use subject::Subject;
 

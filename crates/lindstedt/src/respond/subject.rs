@@ -37,6 +37,8 @@ pub(super) struct Subject<'a> {
     pub(super) factor: Option<Rational>,
     pub(super) small: Option<Rational>,
     pub(super) amplitude: Option<f64>,
+    /// Boxes looked at by a search.
+    pub(super) boxes: usize,
     /// Internal resonances beside the slow flow.
     pub(super) tongues: Tongues,
 }
@@ -132,16 +134,21 @@ impl<'a> Subject<'a> {
         let rotating = coupled(&slow, &small, order, question.sweep.is_some())?;
         let tongues = Tongues::of(&slow, &small, order);
         let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
+        let small = value.as_ref().and_then(Exact::as_rational).cloned();
+        let amplitude = question.amplitude.as_ref().map(Exact::to_f64);
+        let order = order.min(slow.order);
+        let boxes = Limits::default().boxes;
         let subject = Self {
             oscillator,
             work,
-            order: order.min(slow.order),
-            rotating,
+            order,
             slow,
+            rotating,
             swept,
             factor,
-            small: value.as_ref().and_then(Exact::as_rational).cloned(),
-            amplitude: question.amplitude.as_ref().map(Exact::to_f64),
+            small,
+            amplitude,
+            boxes,
             tongues,
         };
         subject.check()?;
@@ -328,7 +335,8 @@ impl<'a> Subject<'a> {
     }
 
     pub(super) fn limits(&self, reach: f64) -> Limits {
-        Limits { modulus: Some(reach), stop: self.work.stop.clone(), ..Limits::default() }
+        let (modulus, stop) = (Some(reach), self.work.stop.clone());
+        Limits { modulus, stop, boxes: self.boxes, ..Limits::default() }
     }
 
     pub(super) fn empty(&self, reach: f64, complete: bool) -> Response {

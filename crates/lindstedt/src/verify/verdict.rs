@@ -1,6 +1,6 @@
 //! What the errors at several values of the small parameter say of the order of accuracy.
 
-use super::Verify;
+use super::{SteadyStates, Verify};
 use crate::{Number, Status};
 use lindstedt_equation::Condition;
 use rug::{Float, Rational};
@@ -97,6 +97,9 @@ pub struct Verification {
     pub verdict: Verdict,
     /// The verdict in words.
     pub reason: String,
+    /// At a resonance: the steady states against periodic orbits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steady: Option<SteadyStates>,
     /// The errors of the last two values are above those of the integration.
     #[serde(skip)]
     pub resolved: bool,
@@ -143,6 +146,7 @@ impl Verification {
             tolerance: TOLERANCE,
             verdict,
             reason: String::new(),
+            steady: None,
             resolved,
             small_enough,
         };

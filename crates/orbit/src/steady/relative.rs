@@ -121,6 +121,15 @@ impl FreePhase {
         (&one * squares[0]) + &(&two * squares[1]) + &(&one * &own)
     }
 
+    /// A of a motion of a family.
+    #[must_use]
+    pub fn amplitude(&self, values: &[Option<Value>], w: &[f64]) -> Option<f64> {
+        let rows = System::new(self.energy.as_ref()?, values).values(&[] as &[f64]);
+        let square =
+            w[0].powi(2) + w[1].powi(2) + rows[1] / rows[0] * (w[2].powi(2) + w[3].powi(2));
+        Some(2.0 * square.sqrt())
+    }
+
     /// Some R with |w_j| <= R at all motions: of families from A, else from the terms of highest degree of Re(conj(w_j) G_j) and
     /// d_2 |w_2|^2 Im(conj(w_1) G_1) - d_1 |w_1|^2 Im(conj(w_2) G_2), which vanish there. Nothing where they have common zeros.
     #[must_use]

@@ -4,8 +4,9 @@ use super::Present;
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::Answer;
+use lindstedt::respond::Estimate;
 use lindstedt::unstable::coeff::print::latex_name;
-use lindstedt::verify::{Comparison, Verification};
+use lindstedt::verify::{Comparison, SteadyStates, Verification};
 
 /// Small parameter, difference, error of the integration, slope.
 fn row(c: &Comparison) -> [String; 4] {
@@ -24,14 +25,42 @@ fn title(answer: &Answer<Verification>) -> String {
     )
 }
 
+/// The steady states against periodic orbits.
+fn steady(value: &SteadyStates, small: Text) -> Document {
+    let page =
+        Document::default().heading("steady states, and periodic orbits of the equation near them");
+    if let Some(reason) = &value.refused {
+        return page.words(format!("not compared: {reason}"));
+    }
+    let short =
+        |x: &Option<Estimate>| x.as_ref().map_or("none".to_owned(), |x| format!("{:.3e}", x.value));
+    let frequency = value.states.iter().flat_map(|it| &it.table).any(|it| it.frequency.is_some());
+    let head = ["a".into(), small, "amplitude".into(), "phase".into()].into_iter();
+    let head = head.chain(frequency.then(|| "frequency".into())).chain(["local order".into()]);
+    let mut table = Table::new(head);
+    for state in &value.states {
+        let own: Vec<String> = state.amplitudes.iter().map(|a| format!("{:.6}", a.value)).collect();
+        for line in &state.table {
+            let mut cells = vec![own.join(", "), line.small.clone()];
+            cells.extend([short(&line.amplitude), short(&line.phase)]);
+            cells.extend(frequency.then(|| short(&line.frequency)));
+            cells.push(line.slope.map(|slope| format!("{slope:.4}")).unwrap_or_default());
+            table = table.row(cells);
+        }
+    }
+    page.table(table).words(format!("order expected: {}", value.expected_order))
+}
+
 impl Present for Answer<Verification> {
     fn document(&self) -> Document {
         let name = self.value.parameter.as_str();
         let small = Text::from(Formula::new(name, latex_name(name)));
         let error = Text::from(Formula::new("max |x_N - x|", r"\max |x_N - x|"));
+        let steady = self.value.steady.as_ref().map(|it| steady(it, small.clone()));
         let table = Table::new([small, error, "integration".into(), "local order".into()]);
         let table = self.value.table.iter().map(row).fold(table, Table::row);
-        Document::titled(title(self)).table(table).words(self.value.reason.as_str())
+        let page = Document::titled(title(self)).table(table).words(self.value.reason.as_str());
+        steady.into_iter().fold(page, Document::append)
     }
 
     /// The errors over the small parameter, with the line of slope N + 1.
