@@ -27,6 +27,7 @@
 //! agrees with the truth in 58 to 69% of the points of eight orbits ([`characteristic`] decides).
 //!
 //! ```
+//! use lindstedt_algebra::Stop;
 //! use lindstedt_impact::parameters::{Branch, ExactParameters};
 //! use lindstedt_number::Exact;
 //! use lindstedt_impact::report::{Request, certified_stability};

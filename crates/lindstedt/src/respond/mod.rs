@@ -151,29 +151,7 @@ impl Oscillator {
         }
         let combination = subject.rotating.combination.as_ref();
         let counted = subject.rotating.free.is_some() && question.sweep.is_none();
-        if let Some(modes) = combination {
-            let names: Vec<_> = modes.iter().map(|j| value.coordinates[*j].as_str()).collect();
-            let rest = match counted {
-                true => {
-                    "the other turns freely, in every state with rates of its own; their frequencies differ by these from \
-                     those of the frame"
-                }
-                false => {
-                    "their amplitudes may be steady in other frames than this one; such motions are not among the states \
-                     (`simulate` shows them)"
-                }
-            };
-            remarks.push(Remark(format!(
-                "combination resonance of {}: the force fixes one combination of their phases, and {rest}",
-                names.join(", ")
-            )));
-        } else if unforced.is_some() {
-            remarks.push(Remark(subject.of_free_motion()));
-        } else if subject.rotating.fixed < subject.rotating.turns.len() {
-            let text = "the resonances of these orders leave a phase free: a motion that is steady in another \
-                        rotating frame is none of these states";
-            remarks.push(Remark(text.to_owned()));
-        }
+        remarks.extend(subject.of_phases(&value.coordinates, counted).map(Remark));
         remarks.extend(subject.enclosed());
         remarks.extend(missing(&value));
         remarks.extend(subject.doubts(question, &value));
@@ -189,6 +167,33 @@ impl Oscillator {
 }
 
 impl Subject<'_> {
+    /// What the phases that no force fixes mean for the states listed.
+    fn of_phases(&self, coordinates: &[String], counted: bool) -> Option<String> {
+        if let Some(modes) = &self.rotating.combination {
+            let names: Vec<_> = modes.iter().map(|j| coordinates[*j].as_str()).collect();
+            let rest = match counted {
+                true => {
+                    "the other turns freely, in every state with rates of its own; their frequencies differ by these from \
+                     those of the frame"
+                }
+                false => {
+                    "their amplitudes may be steady in other frames than this one; such motions are not among the states \
+                     (`simulate` shows them)"
+                }
+            };
+            return Some(format!(
+                "combination resonance of {}: the force fixes one combination of their phases, and {rest}",
+                names.join(", ")
+            ));
+        }
+        if self.rotating.unforced().is_some() {
+            return Some(self.of_free_motion());
+        }
+        let text = "the resonances of these orders leave a phase free: a motion that is steady in another \
+                    rotating frame is none of these states";
+        (self.rotating.fixed < self.rotating.turns.len()).then(|| text.to_owned())
+    }
+
     /// All states at the values set.
     fn states(&self) -> Result<Response, Error> {
         let values = self.values([None, None]);

@@ -7,7 +7,7 @@ use crate::refusal::Refused;
 use crate::{Error, Exact, Oscillator, Work};
 use lindstedt_evaluation::rotating::{FAMILY, forced_part};
 use lindstedt_simulate::{
-    Doubles, Integrator, Model, Parameters, Report, Settings, System, monodromy,
+    Doubles, Integrator, Model, Parameters, Report, Settings, System, Tick, monodromy,
 };
 use nalgebra::{Complex, DMatrix, DVector};
 use rug::{Integer, Rational};
@@ -62,12 +62,16 @@ impl Oscillator {
         }
         let flow = Flow::of(&subject)?;
         let moves = |state: &&State| state.at.iter().any(|x| *x != 0.0);
+        let tick = || match work.stop.asked() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
         let mut list = Vec::new();
         for state in subject.all(&question)?.iter().filter(moves) {
             let own = |state: &State| subject.harmonic(state);
-            let found = flow
-                .closes(state)
-                .then(|| flow.orbit(subject.position(state), state.frequency.map(|it| it.value)));
+            let frequency = state.frequency.map(|it| it.value);
+            let found =
+                flow.closes(state).then(|| flow.orbit(subject.position(state), frequency, &tick));
             let Some(found) = found.flatten() else {
                 list.push((own(state), None));
                 continue;
@@ -201,7 +205,7 @@ impl Flow {
     }
 
     /// The orbit near a start, of a free period if the force has none.
-    fn orbit(&self, start: Vec<f64>, frequency: Option<f64>) -> Option<Harmonic> {
+    fn orbit(&self, start: Vec<f64>, frequency: Option<f64>, tick: &Tick<'_>) -> Option<Harmonic> {
         let n = start.len();
         let q = self.turns.1;
         let mut at = start;
@@ -209,7 +213,7 @@ impl Flow {
         let precision = Settings::for_digits(16);
         let mut before = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let flow = monodromy(&self.system, (&0.0, &period), &at, precision).ok()?;
+            let flow = monodromy(&self.system, (&0.0, &period), &at, precision, tick).ok()?;
             let columns = n + usize::from(self.period.is_none());
             let rates = self.rates(&at)?;
             let matrix = DMatrix::from_fn(n, columns, |k, i| match flow.matrix[k].get(i) {

@@ -55,6 +55,22 @@ fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<R
     Ok(found)
 }
 
+/// The oscillator with the values set, but of the small parameter and of what varies.
+fn at_values(oscillator: &Oscillator, swept: &[Option<String>; 2]) -> Oscillator {
+    let problem = oscillator.problem();
+    let small = problem.small.to_string();
+    let varies = |known: &String| swept.iter().flatten().any(|name| name == known);
+    let mut case = oscillator.clone();
+    for (known, value) in oscillator.all_values() {
+        case = if varies(&known) { case.without(&known) } else { case };
+        if known != small && !varies(&known) {
+            case = case.with(&known, value);
+        }
+    }
+    // That of a family is no parameter of the equations.
+    if problem.others.is_empty() { case } else { case.without(FAMILY) }
+}
+
 impl<'a> Subject<'a> {
     pub(super) fn new(
         oscillator: &'a Oscillator,
@@ -71,18 +87,7 @@ impl<'a> Subject<'a> {
         let small = problem.small.to_string();
         let name = |axis: &Option<Axis>| axis.as_ref().map(|axis| axis.name.clone());
         let mut swept = [name(&question.sweep), name(&question.second)];
-        let varies = |known: &String| swept.iter().flatten().any(|name| name == known);
-        let mut case = oscillator.clone();
-        for (known, value) in oscillator.all_values() {
-            case = if varies(&known) { case.without(&known) } else { case };
-            if known != small && !varies(&known) {
-                case = case.with(&known, value);
-            }
-        }
-        // That of a family is no parameter of the equations.
-        if !problem.others.is_empty() {
-            case = case.without(FAMILY);
-        }
+        let case = at_values(oscillator, &swept);
         let asked = |case: &Oscillator| whole(case.flow(order, work)?.value, order);
         let mut slow = asked(&case);
         let mut factor = None;
