@@ -29,6 +29,8 @@ impl Interval {
     pub const ZERO: Self = Self { low: 0.0, high: 0.0 };
     /// 1.
     pub const ONE: Self = Self { low: 1.0, high: 1.0 };
+    /// -1.
+    pub const MINUS_ONE: Self = Self { low: -1.0, high: -1.0 };
     /// The whole line: nothing is known.
     pub const LINE: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
@@ -135,6 +137,12 @@ impl Interval {
     pub fn halves(self) -> [Self; 2] {
         let middle = self.middle();
         [Self { high: middle, ..self }, Self { low: middle, ..self }]
+    }
+    /// The square root of what is not negative.
+    #[must_use]
+    pub fn root(self) -> Self {
+        let low = self.low.max(0.0).sqrt().next_down().max(0.0);
+        Self::new(low, self.high.max(0.0).sqrt().next_up())
     }
     /// x^n; of even powers no negative values.
     #[must_use]

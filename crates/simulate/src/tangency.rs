@@ -285,21 +285,23 @@ impl Homoclinic<'_> {
         // What the orbits followed do not see of the minimum moves its tangency by as much as the margin changes over.
         let reach = width / 2.0 + 2.0 * width * (1.0 + least.unseen / change);
         let is_near = |tangency: &Tangency| (tangency.value - middle).abs() <= reach;
-        let first = self.tangency(value, least.phase, tick)?;
+        let mut first = self.tangency(value, least.phase, tick)?;
         if !is_near(&first) {
             return Err(SimulateError::NoTangency { value });
         }
         let equal = |other: &&Minimum| {
             other.margin - least.margin <= change + least.unseen.max(other.unseen)
         };
-        let Some(other) = minima.get(1).filter(equal) else { return Ok(first) };
-        match self.tangency(value, other.phase, tick) {
-            Err(SimulateError::Stopped) => Err(SimulateError::Stopped),
-            Ok(other) if is_near(&other) && direction * (other.value - first.value) < 0.0 => {
-                Ok(other)
+        for other in minima[1..].iter().filter(equal) {
+            match self.tangency(value, other.phase, tick) {
+                Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
+                Ok(other) if is_near(&other) && direction * (other.value - first.value) < 0.0 => {
+                    first = other;
+                }
+                _ => {}
             }
-            _ => Ok(first),
         }
+        Ok(first)
     }
 
     /// The tangency near a value of the parameter and a phase: Newton's method for G = 0 and

@@ -130,14 +130,16 @@ impl Subject<'_> {
     pub(super) fn unforced(&self, free: &FreePhase, question: &Respond) -> Result<Response, Error> {
         refuse_forced(question)?;
         let Some(axis) = &question.sweep else {
-            let (reach, complete) = self.reach(&[self.values([None, None])])?;
+            let reach = self.reach(&[self.values([None, None])])?;
+            let (reach, complete) = (reach.modulus, reach.complete[0]);
             let mut response = self.empty(reach, complete);
             response.states.push(self.in_step(free, reach, None)?);
             return Ok(response);
         };
         let samples = self.samples(axis)?;
         let at: Vec<_> = samples.iter().map(|sample| self.values([Some(sample), None])).collect();
-        let (reach, complete) = self.reach(&at)?;
+        let reach = self.reach(&at)?;
+        let (reach, complete) = (reach.modulus, reach.complete[0]);
         let mut response = self.empty(reach, complete);
         response.parameter = Some(axis.name.clone());
         response.no_closed_missing = Some(false);

@@ -38,7 +38,8 @@ pub struct Respond {
     pub sweep: Option<Axis>,
     /// A second one: curves of folds and Hopf points, cusps and Bogdanov-Takens points in the plane of the two.
     pub second: Option<Axis>,
-    /// The largest amplitude that is looked at; if nothing, one that has all steady states of the slow flow of order one.
+    /// The largest amplitude that is looked at; if nothing, one that has the steady states of the slow flow of the lowest order that
+    /// bounds any, or, where the states in it are not decided, one within which every order adds less than the order before.
     pub amplitude: Option<Exact>,
     /// With a sweep: also the equation itself, integrated along the values upwards and downwards, each from the end of the
     /// one before.
@@ -197,10 +198,10 @@ impl Subject<'_> {
     /// All states at the values set.
     fn states(&self) -> Result<Response, Error> {
         let values = self.values([None, None]);
-        let (reach, complete) = self.reach(std::slice::from_ref(&values))?;
+        let reach = self.reach(std::slice::from_ref(&values))?;
         let system = self.rotating.flow.system(&values);
-        let found = steady::all_states(&self.rotating.flow, &values, reach, &self.limits(reach));
-        let found = found.ok_or_else(not_determined)?;
+        let look = |reach, limits| steady::all_states(&self.rotating.flow, &values, reach, &limits);
+        let (found, reach, complete) = self.within(&reach, look, steady::Found::is_proved)?;
         let mut response = self.empty(reach, complete);
         let mut states = self.shown_states(None, &system, &found).ok_or(Error::NoValue)?;
         if let Some(free) = &self.rotating.free {
@@ -214,17 +215,17 @@ impl Subject<'_> {
     fn branches(&self, axis: &Axis) -> Result<Response, Error> {
         let samples = self.samples(axis)?;
         let at: Vec<_> = samples.iter().map(|sample| self.values([Some(sample), None])).collect();
-        let (reach, complete) = self.reach(&at)?;
-        let course = self.course(&samples, axis, reach)?;
+        let reach = self.reach(&at)?;
         let values = self.values([None, None]);
-        let survey = Survey {
-            flow: &self.rotating.flow,
-            values: values.clone(),
-            samples,
-            course: course.clone(),
-            limits: self.limits(reach),
+        let course = self.course(&samples, axis, reach.modulus)?;
+        let look = |reach, limits| {
+            let course = Course { reach, ..course.clone() };
+            let (values, samples) = (values.clone(), samples.clone());
+            Survey { flow: &self.rotating.flow, values, samples, course, limits }.run()
         };
-        let found = survey.run().ok_or_else(not_determined)?;
+        let decides = |found: &steady::Response| found.searches.iter().all(|it| it.1.is_proved());
+        let (found, reach, complete) = self.within(&reach, look, decides)?;
+        let course = Course { reach, ..course };
         let mut response = self.empty(reach, complete);
         response.parameter = Some(axis.name.clone());
         response.no_closed_missing = Some(found.no_closed_missing);
@@ -266,7 +267,8 @@ impl Subject<'_> {
         let pairs =
             samples[0].iter().flat_map(|a| samples[1].iter().map(move |b| [Some(a), Some(b)]));
         let at: Vec<_> = pairs.map(|pair| self.values(pair)).collect();
-        let (reach, complete) = self.reach(&at)?;
+        let reach = self.reach(&at)?;
+        let (reach, complete) = (reach.modulus, reach.complete[0]);
         let values = self.values([None, None]);
         let open = self.open();
         let [Some(a), Some(b)] = open else { return Err(not_determined()) };

@@ -2,7 +2,7 @@
 
 use super::answer::{Estimate, Response};
 use super::frequency::{forcing_frequency, moving_frequency};
-use super::{ORDER, Respond, SEARCHES, STEPS};
+use super::{ORDER, Respond, SEARCHES, STEPS, not_determined};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
 use crate::refusal::Refused;
@@ -13,7 +13,9 @@ use lindstedt_evaluation::rotating::{FAMILY, NoFrame, Rotating, forced_part, rot
 use lindstedt_evaluation::tongue::Tongues;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::interval::Interval;
-use lindstedt_orbit::steady::{self, Course, Limits, System, Value, all_zeros, bound, follow};
+use lindstedt_orbit::steady::{
+    self, Course, Limits, System, Value, all_zeros, bound, follow, outermost,
+};
 use rug::Rational;
 
 /// The box is so many times as large as that of order one, for higher orders.
@@ -22,6 +24,18 @@ const ROOM: f64 = 1.25;
 const BITS: u32 = 80;
 /// How far beside the range a backbone may begin, in widths of it.
 const BESIDE: f64 = 4.0;
+
+/// Boxes looked at where a smaller box may decide what this one does not.
+const FEW_BOXES: usize = 20_000;
+
+/// The largest |w_j| that are looked at.
+pub(super) struct Reach {
+    pub(super) modulus: f64,
+    /// A smaller one, for where that one decides nothing.
+    less: Option<f64>,
+    /// Whether all states of the truncated slow flow lie within the one and the other.
+    pub(super) complete: [bool; 2],
+}
 
 pub(super) type Values = Vec<Option<Value>>;
 
@@ -303,9 +317,8 @@ impl<'a> Subject<'a> {
         values.map(|value| detuning(value).ok_or(Error::NoValue)).collect()
     }
 
-    /// The largest |w_j| that is looked at, and whether it has all states: that asked for, else a bound of the
-    /// steady states of order one.
-    pub(super) fn reach(&self, at: &[Values]) -> Result<(f64, bool), Error> {
+    /// How far to look: as asked, else so that all steady states of the lowest order that bounds any lie within.
+    pub(super) fn reach(&self, at: &[Values]) -> Result<Reach, Error> {
         let largest = |rotating: &Rotating| {
             let bound = |values: &Values| match rotating.unforced() {
                 Some(free) => free.bound(values),
@@ -320,23 +333,81 @@ impl<'a> Subject<'a> {
             return Err(no_amplitude("is a positive number"));
         }
         let whole = largest(&self.rotating);
-        let reach = match self.amplitude {
-            None if self.is_family() => whole.ok_or(Error::NoValue)?,
+        let (modulus, less) = match self.amplitude {
+            None if self.is_family() => (whole.ok_or(Error::NoValue)?, None),
             // Not further than there can be states.
-            Some(amplitude) => whole.map_or(amplitude / 2.0, |r| (ROOM * r).min(amplitude / 2.0)),
-            None => {
-                let small = self.oscillator.problem().small.to_string();
-                // A box to look in: terms of high degree that are almost zero bound nothing.
-                let sure = SlowFlow { doubtful: Vec::new(), ..self.slow.clone() };
-                let first = rotating(&sure, &small, 1).map_err(no_frame)?;
-                let bound = largest(&first).ok_or_else(|| {
-                    let message = "no bound of the steady states follows from the first order";
-                    Refused::undecided("box", message, "--box AMPLITUDE says how far to look")
-                })?;
-                ROOM * bound
+            Some(amplitude) => {
+                (whole.map_or(amplitude / 2.0, |r| (ROOM * r).min(amplitude / 2.0)), None)
             }
+            None => self.leading(at, &largest)?,
         };
-        Ok((reach, whole.is_some_and(|whole| whole <= reach)))
+        let complete =
+            [Some(modulus), less].map(|r| r.is_some_and(|r| whole.is_some_and(|it| it <= r)));
+        Ok(Reach { modulus, less, complete })
+    }
+
+    /// A box of the lowest order that bounds its states, and a smaller one: with its states, or as large as the orders fall within.
+    fn leading(
+        &self,
+        at: &[Values],
+        largest: &dyn Fn(&Rotating) -> Option<f64>,
+    ) -> Result<(f64, Option<f64>), Error> {
+        let small = self.oscillator.problem().small.to_string();
+        // A box to look in: terms of high degree that are almost zero bound nothing.
+        let sure = SlowFlow { doubtful: Vec::new(), ..self.slow.clone() };
+        // Of states at rest in the frame, not of motions that turn in it.
+        let outer = |rotating: &Rotating, known| {
+            let one = |values| outermost(&rotating.flow, values, known);
+            let mut at = at.iter().filter(|_| rotating.unforced().is_none()).peekable();
+            at.peek()?;
+            at.try_fold(0.0f64, |most, values| Some(most.max(one(values)?)))
+        };
+        for order in 1..=self.order {
+            let rotating = rotating(&sure, &small, order).map_err(no_frame)?;
+            let Some(most) = largest(&rotating) else {
+                match outer(&rotating, None) {
+                    Some(most) => return Ok((ROOM * most, None)),
+                    None => continue,
+                }
+            };
+            let states = (self.order > order).then(|| outer(&rotating, Some(most))).flatten();
+            let less = states.map(|states| ROOM * self.falling(at, states, most));
+            return Ok((ROOM * most, less.filter(|less| *less < ROOM * most)));
+        }
+        let message = "no bound of the steady states follows from the slow flow";
+        let hint = "--box AMPLITUDE says how far to look";
+        Err(Refused::undecided("box", message, hint).into())
+    }
+
+    /// The largest modulus between two at which every order adds less to the slow flow than the order before, or the least:
+    /// states of the truncated flow farther out say nothing of the oscillator.
+    fn falling(&self, at: &[Values], least: f64, most: f64) -> f64 {
+        let falls = |r: &f64| {
+            let place = [ROOM * r, 0.0].repeat(self.rotating.turns.len());
+            at.iter().all(|values| self.growth(values, &place) < 1.0)
+        };
+        let radii = (0..64).map(|k| most * 0.5f64.powf(f64::from(k) / 4.0));
+        radii.take_while(|r| *r > least).find(falls).unwrap_or(least)
+    }
+
+    /// What is found in a box, or, where a few boxes do not decide that, in the smaller one; with its reach and whether that has
+    /// all states.
+    pub(super) fn within<T>(
+        &self,
+        reach: &Reach,
+        look: impl Fn(f64, Limits) -> Option<T>,
+        decides: impl Fn(&T) -> bool,
+    ) -> Result<(T, f64, bool), Error> {
+        let limits = self.limits(reach.modulus);
+        let boxes = if reach.less.is_some() { FEW_BOXES } else { limits.boxes };
+        let found = look(reach.modulus, Limits { boxes, ..limits }).ok_or_else(not_determined)?;
+        match reach.less {
+            Some(less) if !decides(&found) && !self.work.stop.asked() => {
+                let found = look(less, self.limits(less)).ok_or_else(not_determined)?;
+                Ok((found, less, reach.complete[1]))
+            }
+            _ => Ok((found, reach.modulus, reach.complete[0])),
+        }
     }
 
     pub(super) fn limits(&self, reach: f64) -> Limits {

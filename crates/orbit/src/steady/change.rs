@@ -126,13 +126,19 @@ impl Flow {
         });
         let moved =
             |i: usize| [0, 1].map(|k| (points[i + 1].at[n + k] - points[i].at[n + k]) / extent[k]);
+        // After its last piece a closed curve has the first.
+        let pieces = points.len().saturating_sub(1);
+        let after = |i: usize| match folds.closed {
+            true => Some(i % pieces),
+            false => (i < pieces).then_some(i),
+        };
         let back = |i: usize, j: usize| {
-            j + 1 < points.len() && {
+            after(j).is_some_and(|j| {
                 let [a, b] = [moved(i), moved(j)];
                 a[0] * b[0] + a[1] * b[1] < 0.0
-            }
+            })
         };
-        for i in 0..points.len().saturating_sub(2) {
+        for i in 0..pieces {
             if back(i, i + 1) || back(i, i + 2) {
                 keep(Change::Cusp, &points[i + 1].at);
             }

@@ -194,7 +194,7 @@ fn dot(a: &[Polynomial], b: &[Polynomial]) -> Polynomial {
 }
 
 /// The product of complex numbers.
-fn times(a: &[Polynomial; 2], b: &[Polynomial; 2]) -> [Polynomial; 2] {
+pub(super) fn times(a: &[Polynomial; 2], b: &[Polynomial; 2]) -> [Polynomial; 2] {
     let minus = &a[1] * &whole(-1);
     [(&a[0] * &b[0]) + &(&minus * &b[1]), (&a[0] * &b[1]) + &(&a[1] * &b[0])]
 }

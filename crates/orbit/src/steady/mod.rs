@@ -46,6 +46,7 @@ mod survey;
 mod tests;
 mod value;
 
+pub use balance::outermost;
 pub use branch::{Branch, Course, Point, follow, state_at};
 pub use flow::{Change, ComplexTerm, Flow};
 pub use krawczyk::{Region, Zero, zero_near};

@@ -6,7 +6,7 @@
 
 use super::balance::Balance;
 use super::krawczyk::{Region, Zero, middle};
-use super::search::{Found, Limits, halved, modulus, zeros_with_moduli};
+use super::search::{Found, Limits, Places, halved, modulus, zeros_at};
 use super::{ComplexTerm, Flow, System, Value};
 use lindstedt_number::interval::Interval;
 use rug::Rational;
@@ -173,10 +173,11 @@ pub fn all_states(
     fewer.or_else(|| {
         let region = vec![Interval::new(-reach, reach); flow.unknowns()];
         let most = limits.modulus.unwrap_or_else(|| modulus(&region).high());
-        let open = Balance::of(flow, values).map(|balance| balance.open(most, limits));
-        let cells = open.as_ref().map(|(cells, _)| &cells[..]);
-        let mut found = zeros_with_moduli(&flow.system(values), &region, cells, limits)?;
-        found.boxes += open.map_or(0, |(_, looked_at)| looked_at);
+        let moduli = vec![Interval::new(0.0, most); flow.complex.len()];
+        let (places, cells) = Balance::of(flow, values)
+            .map_or((Places::Anywhere, 0), |balance| balance.places(moduli, limits));
+        let mut found = zeros_at(&flow.system(values), &region, &places, limits)?;
+        found.boxes += cells;
         Some(found)
     })
 }

@@ -74,14 +74,24 @@ impl Found {
 /// ```
 #[must_use]
 pub fn all_zeros(system: &System, region: &[Interval], limits: &Limits) -> Option<Found> {
-    zeros_with_moduli(system, region, None, limits)
+    zeros_at(system, region, &Places::Anywhere, limits)
 }
 
-/// The same, where zeros have their moduli of (x_0, x_1), (x_2, x_3), ... in one of the cells given.
-pub(super) fn zeros_with_moduli(
+/// Where zeros can be.
+pub(super) enum Places {
+    /// Anywhere.
+    Anywhere,
+    /// Where their moduli of (x_0, x_1), (x_2, x_3), ..., and an odd last one, lie in one of these cells.
+    Moduli(Vec<Region>),
+    /// In one of these boxes.
+    Boxes(Vec<Region>),
+}
+
+/// The same where something is known of the places.
+pub(super) fn zeros_at(
     system: &System,
     region: &[Interval],
-    cells: Option<&[Region]>,
+    places: &Places,
     limits: &Limits,
 ) -> Option<Found> {
     let n = region.len();
@@ -90,7 +100,7 @@ pub(super) fn zeros_with_moduli(
         return None;
     }
     let (zeros, open) = (Vec::new(), Vec::new());
-    let mut search = Search { system, cells, limits, zeros, open, boxes: 0 };
+    let mut search = Search { system, places, limits, zeros, open, boxes: 0 };
     let stopped = !search.run(region);
     let meets = |zero: &Zero| meet(&zero.enclosure, region).is_some();
     // Boxes that were open before a zero was proved on a box around them.
@@ -114,10 +124,7 @@ pub(super) fn zeros_with_moduli(
 /// Enclosures of the moduli of (x_0, x_1), (x_2, x_3), ...; an odd last one stands alone.
 fn moduli(region: &[Interval]) -> impl Iterator<Item = Interval> {
     let square = |pair: &[Interval]| pair.iter().fold(Interval::ZERO, |sum, x| sum + x.powi(2));
-    let root = |square: Interval| {
-        Interval::new(square.low().sqrt().next_down().max(0.0), square.high().sqrt().next_up())
-    };
-    region.chunks(2).map(move |pair| root(square(pair)))
+    region.chunks(2).map(move |pair| square(pair).root())
 }
 
 /// An enclosure of the largest modulus of (x_0, x_1), (x_2, x_3), ...; an odd last one stands alone.
@@ -132,8 +139,7 @@ const ROUNDING: f64 = 1e-13;
 
 struct Search<'a> {
     system: &'a System,
-    /// Where the moduli of its zeros are.
-    cells: Option<&'a [Region]>,
+    places: &'a Places,
     limits: &'a Limits,
     zeros: Vec<Zero>,
     open: Vec<Region>,
@@ -144,7 +150,10 @@ impl Search<'_> {
     /// False when it was stopped.
     fn run(&mut self, region: &[Interval]) -> bool {
         let smallest: Vec<f64> = region.iter().map(|x| self.limits.smallest * x.width()).collect();
-        let mut stack = vec![self.reached(region)];
+        let mut stack = match self.places {
+            Places::Boxes(boxes) => boxes.clone(),
+            _ => vec![self.reached(region)],
+        };
         while let Some(part) = stack.pop() {
             if self.zeros.iter().any(|zero| is_in(&part, &zero.unique_within)) {
                 continue;
@@ -183,22 +192,22 @@ impl Search<'_> {
 
     /// The part of a box that the moduli of zeros reach to.
     fn reached(&self, region: &[Interval]) -> Region {
-        let largest = |j: usize| {
-            let ends =
-                self.cells.iter().flat_map(|cells| cells.iter().map(move |cell| cell[j].high()));
-            ends.fold(if self.cells.is_some() { 0.0 } else { f64::INFINITY }, f64::max)
-        };
-        let side = |(i, x): (usize, &Interval)| {
-            x.meet(Interval::new(-largest(i / 2), largest(i / 2))).unwrap_or(*x)
+        let Places::Moduli(cells) = self.places else { return region.to_vec() };
+        let pairs = region.len() / 2;
+        let largest = |j: usize| cells.iter().fold(0.0, |most: f64, cell| most.max(cell[j].high()));
+        let side = |(i, x): (usize, &Interval)| match i / 2 {
+            j if j < pairs => x.meet(Interval::new(-largest(j), largest(j))).unwrap_or(*x),
+            _ => *x,
         };
         region.iter().enumerate().map(side).collect()
     }
 
     /// Whether a box has points with moduli that zeros may have.
     fn has_moduli(&self, part: &[Interval]) -> bool {
-        let Some(cells) = self.cells else { return true };
-        let moduli: Region = moduli(part).collect();
-        cells.iter().any(|cell| meet(cell, &moduli).is_some())
+        let Places::Moduli(cells) = self.places else { return true };
+        let (pairs, rest) = part.split_at(part.len() / 2 * 2);
+        let place: Region = moduli(pairs).chain(rest.iter().copied()).collect();
+        cells.iter().any(|cell| meet(cell, &place).is_some())
     }
 
     /// Records the zero of a box that has exactly one; false where it cannot be told from another.

@@ -5,11 +5,12 @@
 //! unknown these are looked for themselves, as zeros of G and det G_w in the box and the range.
 
 use super::System;
+use super::balance::Balance;
 use super::branch::{Branch, Course, Point, follow};
 use super::flow::{Change, Flow};
 use super::krawczyk::{Zero, newton};
 use super::quiet::all_states;
-use super::search::{Found, Limits, all_zeros};
+use super::search::{Found, Limits, Places, modulus, zeros_at};
 use super::value::Value;
 use lindstedt_number::Exact;
 use lindstedt_number::interval::Interval;
@@ -53,6 +54,8 @@ pub struct Response {
     pub searches: Vec<(Exact, Found)>,
     /// Whether it is proved that no closed branch in the box and the range is missing.
     pub no_closed_missing: bool,
+    /// The boxes looked at for that.
+    pub boxes: usize,
 }
 
 /// Boxes looked at for folds.
@@ -76,6 +79,7 @@ impl Survey<'_> {
             changes: Vec::new(),
             searches: Vec::new(),
             no_closed_missing: false,
+            boxes: 0,
         };
         for sample in &self.samples {
             let mut values = self.values.clone();
@@ -102,19 +106,32 @@ impl Survey<'_> {
                 break;
             }
         }
-        response.no_closed_missing = self.between(&system, &course, &mut response.branches);
+        if let Some(found) = self.between(&system, &course, &mut response.branches) {
+            (response.no_closed_missing, response.boxes) = (found.is_proved(), found.boxes);
+        }
         response.changes = self.changes(&response.branches);
         Some(response)
     }
 
-    /// Adds the branches of folds that lie on none yet; whether these are proved to be all folds.
-    fn between(&self, system: &System, course: &Course, branches: &mut Vec<Branch>) -> bool {
-        let Some(turning) = self.flow.turning(&self.values) else { return false };
+    /// Adds the branches of folds that lie on none yet; nothing where folds are not looked for.
+    fn between(
+        &self,
+        system: &System,
+        course: &Course,
+        branches: &mut Vec<Branch>,
+    ) -> Option<Found> {
+        let turning = self.flow.turning(&self.values)?;
+        let range = Interval::new(course.range[0], course.range[1]);
         let mut region = vec![Interval::new(-course.reach, course.reach); self.flow.unknowns()];
-        region.push(Interval::new(course.range[0], course.range[1]));
+        region.push(range);
         let boxes = self.limits.boxes.min(MOST_BOXES);
         let limits = Limits { boxes, modulus: None, ..self.limits.clone() };
-        let Some(found) = all_zeros(&turning, &region, &limits) else { return false };
+        let moduli = vec![Interval::new(0.0, modulus(&region[..region.len() - 1]).high()), range];
+        let (places, cells) = Balance::of_folds(self.flow, &self.values)
+            .map_or((Places::Anywhere, 0), |balance| balance.places(moduli, &limits));
+        let mut found = zeros_at(&turning, &region, &places, &limits)?;
+        found.boxes += cells;
+        let mut followed = true;
         for fold in found.zeros.iter().map(Zero::middle) {
             let is_here = |point: &Point| {
                 point.change == Some(Change::Fold) && near(&point.at, &fold, course.reach)
@@ -125,9 +142,15 @@ impl Survey<'_> {
             // From the fold itself it is not clear on which side of it a branch starts.
             let from = follow(system, &fold, course);
             let from = from.and_then(|branch| branch.points.get(branch.points.len() / 2).cloned());
-            branches.extend(from.and_then(|point| follow(system, &point.at, course)));
+            let branch = from.and_then(|point| follow(system, &point.at, course));
+            followed &= branch.is_some();
+            branches.extend(branch);
         }
-        found.is_proved()
+        // A fold that no branch passes leaves its box open.
+        if !followed {
+            found.undecided.push(region);
+        }
+        Some(found)
     }
 
     fn changes(&self, branches: &[Branch]) -> Vec<Located> {

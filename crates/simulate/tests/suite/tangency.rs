@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::common::{parameters, stick_slip};
-use lindstedt_equation::Expression;
+use lindstedt_equation::{Expression, Function};
 use lindstedt_simulate::{
     Doubles, Homoclinic, Loop, Model, Parameters, Settings, SimulateError, Tangency,
     continue_tangency, go_on, saddle, unstable_manifold,
@@ -180,8 +180,7 @@ fn the_unstable_manifold_of_duffing() {
 #[test]
 fn the_damped_duffing_oscillator() {
     let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
-    let force =
-        Expression::parameter("F") * Expression::Time.apply(lindstedt_equation::Function::Cos);
+    let force = Expression::parameter("F") * Expression::Time.apply(Function::Cos);
     let equation =
         Expression::ACCELERATION - x.clone() + x.pow(3) + Expression::Small * (v - force);
     let model = Model::second_order(&equation).unwrap().with_small("eps");
@@ -196,9 +195,8 @@ fn the_damped_duffing_oscillator() {
     // The order of the ends does not matter.
     assert_eq!(homoclinic.first_tangency((0.8, 0.7), 24, &go_on), Ok(tangency));
     // A force of half the period, followed by both periods: a fundamental domain has one extremum, or two equal ones.
-    let double = Expression::Time.apply(lindstedt_equation::Function::Cos).pow(2)
-        * Expression::from(2)
-        - Expression::from(1);
+    let double =
+        Expression::Time.apply(Function::Cos).pow(2) * Expression::from(2) - Expression::from(1);
     let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
     let small = Expression::Small * (v - Expression::parameter("F") * double);
     let model = Model::second_order(&(Expression::ACCELERATION - x.clone() + x.pow(3) + small));
@@ -209,6 +207,34 @@ fn the_damped_duffing_oscillator() {
     });
     println!("{values:?}");
     assert!((values[0].value - values[1].value).abs() < values[0].error + values[1].error);
+}
+
+/// x'' = x - x^3 + (F (cos 3t + cos(t - p)/7000) - x')/100 for p = 0 and a third of a turn either way, which are one another shifted in time: of three
+/// extrema that the orbits followed do not tell apart another one has the first
+/// tangency each time, 8e-3 before the others.
+#[test]
+fn of_three_equal_extrema_the_first_counts() {
+    let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
+    let wave = |function: Function, n: i64| (Expression::Time * n).apply(function);
+    let slow = Expression::parameter("c") * wave(Function::Cos, 1)
+        + Expression::parameter("s") * wave(Function::Sin, 1);
+    let force = Expression::parameter("F") * (wave(Function::Cos, 3) + slow);
+    let small = Expression::Small * (v - force);
+    let model = Model::second_order(&(Expression::ACCELERATION - x.clone() + x.pow(3) + small));
+    let model = &model.unwrap().with_small("eps");
+    // sqrt(3)/2 = 0.8660254.
+    let shifts = [(10_000_000, 0), (-5_000_000, 8_660_254), (-5_000_000, -8_660_254)];
+    let values = shifts.map(|(c, s)| {
+        let share = |n: i64| rug::Rational::from((n, 70_000_000_000i64));
+        let small = rug::Rational::from((1, 100));
+        let parameters = Parameters::new().with("eps", small).with("c", share(c));
+        let parameters = &parameters.with("s", share(s));
+        let (period, side, guess) = (2.0 * PI, Loop::Right, [0.0, 0.0]);
+        let homoclinic = Homoclinic { model, parameters, name: "F", period, side, guess };
+        homoclinic.first_tangency((5.0, 6.2), 25, &go_on).unwrap().value
+    });
+    println!("{values:?}");
+    assert!(values.iter().all(|value| (value - values[0]).abs() < 1e-5), "{values:?}");
 }
 
 /// Every long computation stops at the end of the step in which the tick breaks off.
@@ -240,9 +266,7 @@ fn ticks_break_off() {
 #[test]
 fn a_parametric_force_against_friction_that_depends_on_x() {
     let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
-    let force = Expression::parameter("h")
-        * x.clone()
-        * Expression::Time.apply(lindstedt_equation::Function::Cos);
+    let force = Expression::parameter("h") * x.clone() * Expression::Time.apply(Function::Cos);
     let small = Expression::Small * (x.clone().pow(2) * v - force);
     let model = Model::second_order(&(Expression::ACCELERATION - x.clone() + x.pow(3) + small));
     let model = model.unwrap().with_small("eps");
