@@ -333,7 +333,7 @@ pub fn outermost(flow: &Flow, values: &[Option<Value>], known: Option<f64>) -> O
     };
     let shells: Vec<Option<f64>> = SCALES.map(shell).collect();
     let ends = shells.windows(1 + BEYOND).filter(|run| run[1..].iter().all(Option::is_none));
-    ends.filter_map(|run| run[0]).last()
+    ends.filter_map(|run| run[0]).next_back()
 }
 
 /// An arc of the unit circle within a quadrant, by enclosures of its ends.
