@@ -69,8 +69,8 @@ fn not_listed(result: &Averaging) -> Option<String> {
             ))
         }
         names => Some(format!(
-            "Limit cycles: not listed without the values of {}; with rational ones (--set NAME=VALUE) they are, with their \
-             Floquet exponents.",
+            "Limit cycles: not listed without the values of {}; where these (--set NAME=VALUE) make the coefficients rational \
+             they are, with their Floquet exponents.",
             names.join(", ")
         )),
     }
