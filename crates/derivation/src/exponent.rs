@@ -17,10 +17,12 @@ use std::iter::repeat_n;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 
+type Mean<'a, P, C> = dyn Fn(&[(&P, &P)]) -> Option<C> + Sync + 'a;
+
 /// The orders of x^i (dx/dtau)^j by i and j, and the mean of a sum of products.
 struct Means<'a, P, C> {
     product: &'a dyn Fn([usize; 2]) -> Vec<P>,
-    mean: &'a (dyn Fn(&[(&P, &P)]) -> Option<C> + Sync),
+    mean: &'a Mean<'a, P, C>,
 }
 
 impl<P: Sync, C: Clone + PartialEq + std::fmt::Debug + Send + Sync> Means<'_, P, C> {
@@ -91,9 +93,8 @@ impl Whole {
     fn new(f: &TrigonometricPolynomial<Rational>) -> Self {
         let mut denominator = Integer::from(1);
         f.cos.iter().chain(&f.sin).for_each(|c| enlarge(&mut denominator, c.denom()));
-        let numerator = |c: &Rational| {
-            Integer::from(c.numer() * Integer::from(denominator.div_exact_ref(c.denom())))
-        };
+        let numerator =
+            |c: &Rational| c.numer() * Integer::from(denominator.div_exact_ref(c.denom()));
         let harmonics = [&f.cos, &f.sin].map(|list| list.iter().map(numerator).collect());
         Self { denominator, harmonics }
     }

@@ -93,6 +93,31 @@ impl Refusal for ExpandError {
     }
 }
 
+/// Of a parameter that is sought.
+fn of_sought(error: &ResonanceError) -> Option<(Kind, &'static str, &'static str)> {
+    Some(match error {
+        ResonanceError::NotSought { .. } => {
+            (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
+        }
+        ResonanceError::NoStart { .. } => (Usage, "no-value-set", "--set NAME=VALUE"),
+        ResonanceError::Mixture { .. } | ResonanceError::Turns { .. } => {
+            (NoAnswer, "no-expansion", ALL)
+        }
+        ResonanceError::NotBalanced { .. } => (
+            NoAnswer,
+            "no-expansion",
+            "of an equation that is not linear --set amplitude=VALUE for another; `lindstedt respond` has the steady amplitudes",
+        ),
+        ResonanceError::SoughtFrequency { .. } => (
+            NoAnswer,
+            "no-method",
+            "--set its value, and --unknown of a factor in the equation, as of x: in the time tau = omega*t that is a/omega^2",
+        ),
+        ResonanceError::SoughtOfSeveral { .. } => (NoAnswer, "no-method", ""),
+        _ => return None,
+    })
+}
+
 impl Refusal for ResonanceError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {
@@ -118,22 +143,7 @@ impl Refusal for ResonanceError {
             Self::Unset { .. } => (Usage, "no-value-set", FREQUENCY),
             Self::IrrationalRate { .. } => (NoAnswer, "ratio-not-rational", FRACTION),
             Self::NoRatio { .. } => (Usage, "ratio-not-known", UNKNOWN_RATIO),
-            Self::NotSought { .. } => {
-                (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
-            }
-            Self::NoStart { .. } => (Usage, "no-value-set", "--set NAME=VALUE"),
-            Self::Mixture { .. } | Self::Turns { .. } => (NoAnswer, "no-expansion", ALL),
-            Self::NotBalanced { .. } => (
-                NoAnswer,
-                "no-expansion",
-                "of an equation that is not linear --set amplitude=VALUE for another; `lindstedt respond` has the steady amplitudes",
-            ),
-            Self::SoughtFrequency { .. } => (
-                NoAnswer,
-                "no-method",
-                "--set its value, and --unknown of a factor in the equation, as of x: in the time tau = omega*t that is a/omega^2",
-            ),
-            Self::SoughtOfSeveral { .. } | Self::ForcedMode => (NoAnswer, "no-method", ""),
+            Self::ForcedMode => (NoAnswer, "no-method", ""),
             Self::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
             Self::InternalResonance { .. } => {
                 (NoAnswer, "internal-resonance", "the slow flow has all modes (`derive`)")
@@ -160,7 +170,7 @@ impl Refusal for ResonanceError {
             Self::TooHigh { .. } | Self::TooManyTerms { .. } => {
                 (Undecided, "too-large", "lower --order")
             }
-            _ => (Undecided, "undecided", ""),
+            error => of_sought(error).unwrap_or((Undecided, "undecided", "")),
         };
         (kind, code, hint.to_owned())
     }

@@ -364,7 +364,7 @@ fn no_folds_are_excluded() {
             let [re, im] = parts.map(|x| Rational::from_f64(x).unwrap());
             terms.push(ComplexTerm { re, im, ..term(&powers, &[0], (0, 1), (0, 1)) });
         };
-        let of = |terms: &Vec<ComplexTerm>| Flow::of_complex(&[terms.clone()], &["s"]);
+        let of = |terms: &Vec<ComplexTerm>| Flow::of_complex(std::slice::from_ref(terms), &["s"]);
         // All numbers are dyadic, and doubles have them exactly. G_conj w = i G_w.
         let (_, j) = of(&terms).system(&[None]).derivatives(&at);
         let [a, b, c, d] = [j[0] + j[4], j[3] - j[1], j[0] - j[4], j[3] + j[1]].map(|x| 0.5 * x);

@@ -62,19 +62,19 @@ impl<E: Clone> Sum<E> {
             let known = if place == 0 { None } else { Some(place as usize - 1) };
             return Some(match known {
                 Some(place) => &mut self.terms[place].1,
-                None => self.new(slot, word, zero),
+                None => self.begin(slot, word, zero),
             });
         }
         let slot = number as usize;
         let place = *self.places.get(slot)?;
         if place == 0 {
-            return Some(self.new(slot, word, zero));
+            return Some(self.begin(slot, word, zero));
         }
         let (known, sum) = &mut self.terms[place as usize - 1];
         (*known == word).then_some(sum)
     }
 
-    fn new(&mut self, mut slot: usize, word: Word, zero: impl Fn() -> E) -> &mut [E; 2] {
+    fn begin(&mut self, mut slot: usize, word: Word, zero: impl Fn() -> E) -> &mut [E; 2] {
         if self.numbering.is_none() && 2 * self.terms.len() >= self.places.len() {
             self.places = vec![0; 4 * self.places.len()];
             for place in 0..self.terms.len() {

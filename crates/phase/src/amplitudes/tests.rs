@@ -231,7 +231,7 @@ fn numbered_sums_are_hashed_sums() {
         Some(sum.sorted(|| Whole::ZERO))
     };
     let numbered = |lists: [&[Term<Whole>]; 2]| {
-        let exponents = (0..words::DIGITS).filter(|i| free >> i & 1 == 1);
+        let exponents = (0..DIGITS).filter(|i| free >> i & 1 == 1);
         let numbering = sums::Numbering::of(t.layout, &[lists], exponents, 1 << 20);
         numbering.and_then(|numbering| of(sums::Sum::numbered(numbering), lists))
     };

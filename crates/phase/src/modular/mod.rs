@@ -400,9 +400,10 @@ fn of_symmetry<'a>(
 
 /// How many parts lack their coefficients, and how many their values.
 fn lacking<'a>(parts: impl Iterator<Item = &'a Part> + Clone) -> [usize; 2] {
-    let forms: [fn(&Forms) -> &OnceLock<Vec<Residues>>; 2] =
-        [|forms| &forms.coefficients, |forms| &forms.values];
-    forms.map(|form| parts.clone().filter(|part| form(&part.forms).get().is_none()).count())
+    let no = |form: fn(&Forms) -> &OnceLock<Vec<Residues>>| {
+        parts.clone().filter(|part| form(&part.forms).get().is_none()).count()
+    };
+    [no(|forms| &forms.coefficients), no(|forms| &forms.values)]
 }
 
 fn add_lists(field: &PrimeFields, a: &mut [Residues], b: &[Residues]) {
