@@ -149,29 +149,7 @@ impl Oscillator {
         }
         let combination = subject.rotating.combination.as_ref();
         let counted = subject.rotating.free.is_some() && question.sweep.is_none();
-        if let Some(modes) = combination {
-            let names: Vec<_> = modes.iter().map(|j| value.coordinates[*j].as_str()).collect();
-            let rest = match counted {
-                true => {
-                    "the other turns freely, in every state with rates of its own; their frequencies differ by these from \
-                     those of the frame"
-                }
-                false => {
-                    "their amplitudes may be steady in other frames than this one; such motions are not among the states \
-                     (`simulate` shows them)"
-                }
-            };
-            remarks.push(Remark(format!(
-                "combination resonance of {}: the force fixes one combination of their phases, and {rest}",
-                names.join(", ")
-            )));
-        } else if unforced.is_some() {
-            remarks.push(Remark(subject.of_free_motion()));
-        } else if subject.rotating.fixed < subject.rotating.turns.len() {
-            let text = "the resonances of these orders leave a phase free: a motion that is steady in another \
-                        rotating frame is none of these states";
-            remarks.push(Remark(text.to_owned()));
-        }
+        remarks.extend(subject.free_phases(&value, counted));
         remarks.extend(subject.enclosed());
         remarks.extend(missing(&value));
         remarks.extend(subject.doubts(question, &value));

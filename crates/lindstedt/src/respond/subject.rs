@@ -39,6 +39,28 @@ pub(super) struct Subject<'a> {
     pub(super) boxes: usize,
 }
 
+/// The oscillator with its values, but for those that vary, that of the small parameter, and the amplitude of a family, which is
+/// no parameter of the equations.
+fn with_values(oscillator: &Oscillator, swept: &[Option<String>]) -> Oscillator {
+    let problem = oscillator.problem();
+    let varies = |known: &String| swept.iter().flatten().any(|name| name == known);
+    let mut case = oscillator.clone();
+    for (known, value) in oscillator.all_values() {
+        case = if varies(&known) { case.without(&known) } else { case };
+        if known != *problem.small && !varies(&known) {
+            case = case.with(&known, value);
+        }
+    }
+    if problem.others.is_empty() { case } else { case.without(FAMILY) }
+}
+
+/// Whether a parameter may vary: a symbol of the flow, or the amplitude of a family.
+fn is_open(slow: &SlowFlow, name: &String) -> bool {
+    let family = name == FAMILY && !slow.energy.is_empty();
+    let independent = slow.system.independent.contains(name);
+    family || slow.system.symbols.contains(name) && !is_unit(slow, name) && !independent
+}
+
 /// The flow in the frame where it rests: of modes that a resonance couples, and whole where something varies.
 fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<Rotating, Error> {
     let found = rotating(slow, small, order).map_err(no_frame)?;
@@ -67,30 +89,13 @@ impl<'a> Subject<'a> {
         let small = problem.small.to_string();
         let name = |axis: &Option<Axis>| axis.as_ref().map(|axis| axis.name.clone());
         let mut swept = [name(&question.sweep), name(&question.second)];
-        let varies = |known: &String| swept.iter().flatten().any(|name| name == known);
-        let mut case = oscillator.clone();
-        for (known, value) in oscillator.all_values() {
-            case = if varies(&known) { case.without(&known) } else { case };
-            if known != small && !varies(&known) {
-                case = case.with(&known, value);
-            }
-        }
-        // That of a family is no parameter of the equations.
-        if !problem.others.is_empty() {
-            case = case.without(FAMILY);
-        }
+        let case = with_values(oscillator, &swept);
         let asked = |case: &Oscillator| whole(case.flow(order, work)?.value, order);
         let mut slow = asked(&case);
         let mut factor = None;
-        let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
-        let open = |slow: &SlowFlow, name: &String| {
-            let family = name == FAMILY && !slow.energy.is_empty();
-            let own = slow.system.symbols.contains(name) && !is_unit(slow, name);
-            family || own && !independent(slow, name)
-        };
         if let Some(axis) = &question.sweep
             && axis.name != small
-            && !slow.as_ref().is_ok_and(|slow| open(slow, &axis.name))
+            && !slow.as_ref().is_ok_and(|slow| is_open(slow, &axis.name))
         {
             let name = &axis.name;
             // A frequency: its detuning varies in its place.
@@ -101,7 +106,7 @@ impl<'a> Subject<'a> {
             } else if slow.as_ref().is_ok_and(|slow| is_unit(slow, name)) {
                 return Err(moving_frequency(name));
             } else if let Ok(slow) = &slow {
-                let rate = independent(slow, name);
+                let rate = slow.system.independent.contains(name);
                 return Err(if rate { no_resonance(name) } else { no_part(name) });
             } else if slow.as_ref().is_err_and(|error| is_unset(error, name)) {
                 return Err(no_resonance(name));
@@ -109,9 +114,9 @@ impl<'a> Subject<'a> {
         }
         let slow = slow.map_err(|error| not_weak(oscillator, error))?;
         if let Some(name) =
-            swept.iter().flatten().find(|name| **name != small && !open(&slow, name))
+            swept.iter().flatten().find(|name| **name != small && !is_open(&slow, name))
         {
-            return Err(no_part(name));
+            return Err(if is_unit(&slow, name) { moving_frequency(name) } else { no_part(name) });
         }
         has_numbers(oscillator, &slow)?;
         let rotating = coupled(&slow, &small, order, question.sweep.is_some())?;
