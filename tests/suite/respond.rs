@@ -715,7 +715,7 @@ fn two_self_excited_unknowns_lock() {
     let question = Respond { sweep: Some(Axis::parse("s=-1..1:60").unwrap()), ..to_order(1) };
     let found = ask(pair, &[("eps", "1/10"), ("k", "1/4")], &question);
     let mut folds: Vec<f64> =
-        found.folds.iter().map(|it| decimals(&[it.value.clone()])[0]).collect();
+        found.folds.iter().map(|it| decimals(std::slice::from_ref(&it.value))[0]).collect();
     folds.sort_by(f64::total_cmp);
     assert!(folds.len() == 2 && (folds[0] + 0.5).abs() < 1e-9 && (folds[1] - 0.5).abs() < 1e-9);
     assert_eq!(found.folds[0].value.status, Status::Proved);
@@ -738,7 +738,7 @@ fn eight_normal_modes() {
         .filter(|it| {
             let phases: Vec<f64> =
                 it.phases.iter().flatten().map(|p| p.decimal.parse().unwrap()).collect();
-            phases.iter().any(|p: &f64| (p.abs() - 1.5707963267949).abs() < 1e-9)
+            phases.iter().any(|p: &f64| (p.abs() - std::f64::consts::FRAC_PI_2).abs() < 1e-9)
         })
         .collect();
     assert_eq!(turning.len(), 2);
