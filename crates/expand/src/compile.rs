@@ -353,7 +353,11 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
             let integer = q.is_integer().then(|| q.numer().to_u32()).flatten();
             let unsupported = || {
                 let whole = Expression::Power(Box::new(base.clone()), Box::new(exponent.clone()));
-                ExpandError::UnsupportedTerm { term: whole.print("eps", Style::Text) }
+                let term = whole.print("eps", Style::Text);
+                match base.as_number().is_some_and(|base| base.is_positive()) {
+                    true => ExpandError::IrrationalNumber { number: term },
+                    false => ExpandError::UnsupportedTerm { term },
+                }
             };
             let natural = q.is_integer() && !q.is_negative();
             if !natural && self.offered(&Elementary::Power(q.clone())) {

@@ -19,6 +19,12 @@ pub enum ExpandError {
         /// The offending term.
         term: String,
     },
+    /// A root of a number among the coefficients.
+    #[error("{number} is irrational, and coefficients are rational numbers here")]
+    IrrationalNumber {
+        /// The number.
+        number: String,
+    },
     /// A name without a value.
     #[error("the name {name} has no value")]
     UnknownName {

@@ -219,11 +219,11 @@ impl Oscillator {
     ///   Omega^2 = nu^2 (1 + sum eps^n w_n(rho)),   x_i = sum eps^n x_{i,n}(a, psi),   psi' = Omega,
     ///
     /// rho = a^2 and a the amplitude of the first harmonic of the mode: backbone and shape, from the slow flow
-    /// with the amplitude of this mode alone. The squares of the frequencies are rational numbers. Exact, and
+    /// with the amplitude of this mode alone. Exact, where squares of frequencies are irrational enclosed, and
     /// substituted back.
     ///
     /// # Errors
-    /// [`Error`] with the reason: a force, internal resonance, linear modes without rational form.
+    /// [`Error`] with the reason: a force, internal resonance, multiple modes with an irrational square.
     ///
     /// ```
     /// use lindstedt::{Oscillator, Work, unstable::coeff::print::Style};
@@ -249,7 +249,8 @@ impl Oscillator {
         let checked = value.checked_orders.is_some();
         let stopped = value.order < order || !checked;
         let standing = self.standing(stopped, value.order, checked, &mut remarks);
-        let header = self.header(self.given_text(), Some(value.order), "exact", start);
+        let tier = if value.enclosed.is_some() { "certified" } else { "exact" };
+        let header = self.header(self.given_text(), Some(value.order), tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
 }

@@ -362,7 +362,7 @@ const TABLE: &[(i32, &str, &str, &str, &str)] = &[
     (
         3,
         "no-rational-modes",
-        "derive \"x'' + 2*x - y + eps*x^3/2; y'' + y - x\" --mode 1 --order 1",
+        "derive \"x'' + 2*x - y + eps*x^3/2; y'' + y - x; z'' + 2*z - w; w'' + w - z\" --mode 1 --order 1",
         "without --mode",
         "derive \"x'' + 2*x - y + eps*x^3/2; y'' + y - x\" --order 1",
     ),

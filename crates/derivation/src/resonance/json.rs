@@ -125,7 +125,7 @@ fn waves<'a>(symbols: &'a [String], orders: &[Vec<PolarTerm>]) -> Vec<Vec<Wave<'
 
 impl Serialize for NormalMode {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let texts = |list: &[Rational]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let texts = |list: &[Rational]| list.iter().map(|q| self.number(q)).collect::<Vec<_>>();
         let orders = |list: &[Terms]| -> Vec<String> {
             list.iter().map(|terms| self.print_order(terms, Style::Text)).collect()
         };
@@ -143,7 +143,12 @@ impl Serialize for NormalMode {
         map.serialize_entry("frequency_squared", &orders(&self.frequency_squared))?;
         map.serialize_entry("growth_rate", &orders(&self.growth))?;
         map.serialize_entry("solution", &self.solution.iter().map(shape).collect::<Vec<_>>())?;
-        map.serialize_entry("residual", &Residual::of(self.checked_orders, false))?;
+        if let Some(enclosed) = self.enclosed {
+            map.serialize_entry("radius", &enclosed.radius)?;
+            map.serialize_entry("residual_radius", &enclosed.residual)?;
+        }
+        let residual = Residual::of(self.checked_orders, self.enclosed.is_some());
+        map.serialize_entry("residual", &residual)?;
         map.serialize_entry("method", &Object(vec![("name", "averaging at resonance")]))?;
         map.end()
     }

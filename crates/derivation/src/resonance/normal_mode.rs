@@ -8,13 +8,19 @@
 //! Omega and A being polynomials in rho = a^2 = 4 |z|^2: the backbone and the growth, and x = P q the shape. A
 //! mode j with kappa_j = k^2, which the harmonic k drives, ends it: internal resonance, where no mode moves
 //! alone.
+//!
+//! Where the squares of the frequencies are irrational the slow flow of all modes is enclosed, and of its amplitudes all but one are
+//! zero: they stay so, unless the mode drives another at its frequency.
 
 use super::flow::Symbols;
-use super::modes::{Matrix, Spectrum, spectrum};
+use super::modes::{Matrix, spectrum};
 use super::print::print_powers;
 use super::system::{Prepared, refuse_delays, separated, symbols};
 use super::unit::Unit;
-use super::{Element, Names, ResonanceError, Terms, refuse_near_miss};
+use super::{
+    Element, Enclosed, Names, ResonanceError, SlowFlow, Terms, refuse_near_miss,
+    slow_flow_undetuned,
+};
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
 use crate::limits::refuse_taken;
@@ -71,15 +77,17 @@ pub struct NormalMode {
     pub solution: Vec<Vec<Terms>>,
     /// Orders 0..=this leave no residual; nothing where there was no time to check.
     pub checked_orders: Option<usize>,
+    /// Where squares are irrational: what all numbers are known within.
+    pub enclosed: Option<Enclosed>,
 }
 
 /// The normal mode of a number (from 1, by increasing frequency where the unknowns are coupled), to the order
 /// of the settings. Parameters as for [`super::slow_flow`].
 ///
-/// Exact; every order is substituted back.
+/// Exact, or enclosed where squares of frequencies are irrational; every order is substituted back.
 ///
 /// # Errors
-/// [`ResonanceError`] by name: a force, internal resonance, squares of frequencies that are not rational, a
+/// [`ResonanceError`] by name: a force, internal resonance, irrational squares that are multiple, a
 /// velocity where the frequency is a root. [`Error::SymbolTaken`] for a symbol named like what the mode is written with.
 pub fn normal_mode(
     problem: &Problem,
@@ -100,6 +108,10 @@ pub fn normal_mode(
         unit => (unit, None),
     };
     let modes = spectrum(&prepared.mass, &prepared.stiffness);
+    if unit.is_none() && matches!(modes, Err(ResonanceError::NoRationalForm)) {
+        let flow = slow_flow_undetuned(problem, settings, observer)?;
+        return enclosed_mode(flow, mode);
+    }
     let modes = modes.map_err(|error| match (error, &unit) {
         (ResonanceError::NoRationalForm, Some(unit)) => unit.unset(),
         (other, _) => other,
@@ -114,15 +126,7 @@ pub fn normal_mode(
     let equations = separated(&prepared.equations, &modes, None, names)?;
     let equations = in_own_time(&equations, &square, unit.as_ref())?;
     let symbols = symbols(equations.iter(), names);
-    refuse_taken(&symbols, |base, numbered| match base {
-        "rho" if !numbered => Some("the square of the amplitude"),
-        "a" if !numbered => Some("the amplitude"),
-        "psi" if !numbered => Some("the phase"),
-        "Omega" if !numbered => Some("the frequency"),
-        "nu" if !numbered => Some("the frequency of the linear mode"),
-        _ if numbered && names.is_unknown(base) => Some("a coefficient"),
-        _ => None,
-    })?;
+    check_names(&symbols, names)?;
     let list: Vec<&str> = symbols.iter().map(String::as_str).collect();
     let ratios: Vec<_> =
         modes.squares.iter().map(|other| Rational::from(other / &square)).collect();
@@ -149,7 +153,9 @@ pub fn normal_mode(
     };
     let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
     let rates = found.flow[0].iter().map(|f| in_amplitude(&terms(f))).collect::<Vec<_>>();
-    let solution = (0..count).map(|i| unknown(&modes, i, &found, &terms)).collect();
+    let lists: Vec<Vec<Terms>> =
+        found.solution.iter().map(|list| list.iter().map(&terms).collect()).collect();
+    let solution = modes.shapes.iter().flatten().map(|row| unknown(row, &lists)).collect();
     let mut mode = NormalMode {
         problem: problem.clone(),
         mode,
@@ -159,16 +165,30 @@ pub fn normal_mode(
         shapes: modes.shapes.unwrap_or_default(),
         symbols,
         order: found.order(),
-        frequency_squared: squared(&rates),
+        frequency_squared: squared(&rates, 0.0).0,
         growth: rates.into_iter().map(|[growth, _]| listed(growth)).collect(),
         solution,
         checked_orders,
+        enclosed: None,
     };
     if let Some(root) = root {
         root.put_in(&mode.symbols, 1, mode.frequency_squared.iter_mut().chain(&mut mode.growth));
         root.put_in(&mode.symbols, 3, mode.solution.iter_mut().flatten());
     }
     Ok(mode)
+}
+
+/// Refuses symbols that are named like what a mode is written with.
+fn check_names(symbols: &[String], names: Names<'_>) -> Result<(), Error> {
+    refuse_taken(symbols, |base, numbered| match base {
+        "rho" if !numbered => Some("the square of the amplitude"),
+        "a" if !numbered => Some("the amplitude"),
+        "psi" if !numbered => Some("the phase"),
+        "Omega" if !numbered => Some("the frequency"),
+        "nu" if !numbered => Some("the frequency of the linear mode"),
+        _ if numbered && names.is_unknown(base) => Some("a coefficient"),
+        _ => None,
+    })
 }
 
 /// The equations divided by nu^2, in the time nu t, nu in multiples of the unit.
@@ -222,18 +242,12 @@ fn refuse_internal(
 }
 
 /// x_i order by order, from the modes.
-fn unknown(
-    modes: &Spectrum,
-    i: usize,
-    found: &Found<Element>,
-    terms: &dyn Fn(&Element) -> Terms,
-) -> Vec<Terms> {
-    let row = modes.shapes.iter().flatten().nth(i);
+fn unknown(row: &[Rational], lists: &[Vec<Terms>]) -> Vec<Terms> {
     let order = |n: usize| {
         let mut sum = BTreeMap::<Vec<i32>, [Rational; 2]>::new();
-        for (p, list) in row.into_iter().flatten().zip(&found.solution) {
-            for term in list.get(n).map(terms).unwrap_or_default() {
-                let entry = sum.entry(term.exponents).or_default();
+        for (p, list) in row.iter().zip(lists) {
+            for term in list.get(n).into_iter().flatten() {
+                let entry = sum.entry(term.exponents.clone()).or_default();
                 entry[0] += Rational::from(p * &term.re);
                 entry[1] += Rational::from(p * &term.im);
             }
@@ -241,8 +255,86 @@ fn unknown(
         let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
         kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
     };
-    (0..=found.order()).map(order).collect()
+    (0..lists.iter().map(Vec::len).max().unwrap_or(0)).map(order).collect()
 }
+
+/// The mode of an enclosed flow of all.
+fn enclosed_mode(flow: SlowFlow, mode: usize) -> Result<NormalMode, Error> {
+    let count = flow.unknowns();
+    let index = mode.checked_sub(1).filter(|index| *index < count);
+    let index = index.ok_or(ResonanceError::NoSuchMode { mode, modes: count })?;
+    let known = flow.enclosed.ok_or(ResonanceError::NoRationalForm)?;
+    check_names(&flow.system.symbols, Names(&flow.problem))?;
+    // Of z_j alone: exponents of z, zbar, E and the symbols.
+    let alone = |terms: &Terms| -> Terms {
+        let of = |term: &AmplitudeTerm| {
+            let (amplitudes, rest) = term.exponents.split_at(2 * count);
+            let others = amplitudes.chunks_exact(2).enumerate().filter(|(k, _)| *k != index);
+            let still = others.into_iter().all(|(_, pair)| pair == [0, 0]);
+            let own = amplitudes[2 * index..2 * index + 2].iter().chain(rest).copied();
+            still.then(|| AmplitudeTerm { exponents: own.collect(), ..term.clone() })
+        };
+        terms.iter().filter_map(of).collect()
+    };
+    for (lists, sure) in [(&flow.flow, true), (&flow.doubtful, false)] {
+        for (j, orders) in lists.iter().enumerate().filter(|(j, _)| *j != index) {
+            for (order, terms) in orders.iter().enumerate() {
+                let Some(term) = alone(terms).pop() else { continue };
+                let multiple = term.exponents[0] - term.exponents[1];
+                let harmonic = format!("{multiple}*nu_{mode}");
+                return Err(match sure {
+                    true => ResonanceError::InternalResonance { order, mode: j + 1, multiple },
+                    false => ResonanceError::UndecidedDivisor { order, harmonic },
+                }
+                .into());
+            }
+        }
+    }
+    let mut rates: Vec<_> = flow.flow[index].iter().map(|f| in_amplitude(&alone(f))).collect();
+    let (nu, square) = (&flow.system.frequencies[index], &flow.system.squares[index]);
+    rates.iter_mut().flatten().flat_map(|part| part.values_mut()).for_each(|c| *c /= nu);
+    let size = |list: &mut dyn Iterator<Item = &Rational>| {
+        list.fold(1.0f64, |most, c| most.max(c.to_f64().abs()))
+    };
+    // c/nu with both within r: r (1 + |c/nu|)/(nu - r); the same of squares.
+    let r = known.radius;
+    let quotient = |most: f64, by: f64| UPWARD * r * (1.0 + most) / (by - r);
+    let within = size(&mut rates.iter().flatten().flat_map(|part| part.values()));
+    let (frequency_squared, of_squares) = squared(&rates, quotient(within, nu.to_f64()));
+    let lists: Vec<Vec<Terms>> =
+        flow.solution.iter().map(|list| list.iter().map(alone).collect()).collect();
+    let shapes = flow.system.shapes.clone().unwrap_or_default();
+    let parts = lists.iter().flatten().flatten().flat_map(|term| [&term.re, &term.im]);
+    let (share, part) = (size(&mut shapes.iter().flatten()), size(&mut parts.into_iter()));
+    let of_shapes = UPWARD * count as f64 * r * (share + part + r);
+    let with_first = |list: &[Rational]| {
+        let mut list = list.to_vec();
+        list[..=index].rotate_right(1);
+        list
+    };
+    let ratios: Vec<_> =
+        flow.system.squares.iter().map(|other| Rational::from(other / square)).collect();
+    let of_ratios = quotient(size(&mut ratios.iter()), square.to_f64());
+    let radius = [of_squares, of_shapes, of_ratios].into_iter().fold(r, f64::max);
+    Ok(NormalMode {
+        mode,
+        unit: None,
+        square: square.clone(),
+        ratios: with_first(&ratios),
+        solution: shapes.iter().map(|row| unknown(row, &lists)).collect(),
+        shapes: shapes.iter().map(|row| with_first(row)).collect(),
+        symbols: flow.system.symbols.clone(),
+        order: flow.order,
+        frequency_squared,
+        growth: rates.into_iter().map(|[growth, _]| listed(growth)).collect(),
+        checked_orders: flow.checked_orders,
+        enclosed: Some(Enclosed { radius, ..known }),
+        problem: flow.problem,
+    })
+}
+
+/// Makes up for the rounding of a few operations.
+const UPWARD: f64 = 1.0 + 1e-12;
 
 /// Exponents of rho and the symbols.
 type InAmplitude = BTreeMap<Vec<i32>, Rational>;
@@ -260,24 +352,29 @@ fn in_amplitude(terms: &Terms) -> [InAmplitude; 2] {
     parts
 }
 
-/// (1 + sum eps^n Omega_n)^2, order by order.
-fn squared(rates: &[[InAmplitude; 2]]) -> Vec<Terms> {
+/// (1 + sum eps^n Omega_n)^2, order by order, and what its coefficients are within where those of the Omega_n are within r.
+fn squared(rates: &[[InAmplitude; 2]], r: f64) -> (Vec<Terms>, f64) {
     let symbols = rates.iter().flatten().flat_map(|r| r.keys()).map(Vec::len).max().unwrap_or(1);
     let one = InAmplitude::from([(vec![0; symbols], Rational::from(1))]);
     let order = |n: usize| if n == 0 { &one } else { &rates[n][1] };
+    let mut most = 0.0f64;
     let coefficient = |n: usize| {
-        let mut sum = InAmplitude::new();
+        let mut sum = BTreeMap::<Vec<i32>, (Rational, f64)>::new();
         for k in 0..=n {
             for (v, a) in order(k) {
                 for (w, b) in order(n - k) {
                     let key = v.iter().zip(w).map(|(v, w)| v + w).collect();
-                    *sum.entry(key).or_default() += Rational::from(a * b);
+                    let (c, within) = sum.entry(key).or_default();
+                    *c += Rational::from(a * b);
+                    *within += r * (a.to_f64().abs() + b.to_f64().abs() + r);
                 }
             }
         }
-        listed(sum)
+        most = sum.values().fold(most, |most, (_, within)| most.max(UPWARD * within));
+        listed(sum.into_iter().map(|(key, (c, _))| (key, c)).collect())
     };
-    (0..rates.len()).map(coefficient).collect()
+    let orders = (0..rates.len()).map(coefficient).collect();
+    (orders, most)
 }
 
 fn listed(sum: InAmplitude) -> Terms {
@@ -286,9 +383,25 @@ fn listed(sum: InAmplitude) -> Terms {
 }
 
 impl NormalMode {
+    /// A number: of enclosures the digits that are certain.
+    #[must_use]
+    pub fn number(&self, q: &Rational) -> String {
+        self.enclosed.map_or_else(|| q.to_string(), |it| it.number(q))
+    }
+
+    /// A term of a sum, with its digits among the factors.
+    fn term(&self, c: &Rational, factors: Vec<String>, style: Style) -> Term {
+        let own = |it: Enclosed| it.coefficient(c, style);
+        let (coefficient, digits) = self.enclosed.map_or_else(|| (c.clone(), None), own);
+        Term { coefficient, factors: digits.into_iter().chain(factors).collect() }
+    }
+
     /// nu^2.
     #[must_use]
     pub fn print_square(&self, style: Style) -> String {
+        if self.enclosed.is_some() {
+            return self.number(&self.square);
+        }
         print_square(&self.square, self.unit.as_ref(), style)
     }
 
@@ -313,9 +426,9 @@ impl NormalMode {
     }
 
     fn order_terms(&self, terms: &Terms, style: Style) -> Vec<Term> {
-        let term = |term: &AmplitudeTerm| Term {
-            coefficient: term.re.clone(),
-            factors: self.factors(&[("rho", term.exponents[0])], &term.exponents[1..], style),
+        let term = |term: &AmplitudeTerm| {
+            let factors = self.factors(&[("rho", term.exponents[0])], &term.exponents[1..], style);
+            self.term(&term.re, factors, style)
         };
         terms.iter().map(term).collect()
     }
@@ -347,7 +460,7 @@ impl NormalMode {
                     let backslash = if style == Style::Latex { r"\" } else { "" };
                     factors.push(format!("{backslash}{function}({angle})"));
                 }
-                sum.push(Term { coefficient: c, factors });
+                sum.push(self.term(&c, factors, style));
             }
         }
         print_sum(&sum, style)

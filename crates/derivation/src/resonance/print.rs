@@ -72,15 +72,10 @@ pub fn print_turns(n: u32, phase: &str, style: Style) -> String {
     }
 }
 
-impl SlowFlow {
-    /// The name of the small parameter.
-    fn small(&self, style: Style) -> String {
-        print_name(&self.problem.small, style)
-    }
-
-    /// A coefficient and the factor beside it: of enclosures the sign and the decimal digits.
-    fn coefficient(&self, q: &Rational, style: Style) -> (Rational, Option<String>) {
-        if self.enclosed.is_none() || is_short(q) {
+impl Enclosed {
+    /// A coefficient and the factor beside it: the sign and the decimal digits.
+    pub(super) fn coefficient(&self, q: &Rational, style: Style) -> (Rational, Option<String>) {
+        if is_short(q) {
             return (q.clone(), None);
         }
         let digits = self.number(&q.clone().abs());
@@ -97,15 +92,13 @@ impl SlowFlow {
         }
     }
 
-    /// A coefficient: a rational number as it is (of enclosures, a short one), else the digits that are certain, at most those asked
-    /// for, or `0 +- 2.2e-55` where none is.
-    #[must_use]
-    pub fn number(&self, q: &Rational) -> String {
-        if is_short(q) { q.to_string() } else { self.digits(q) }
+    /// A short number as it is, of others the digits that are certain.
+    pub(super) fn number(&self, q: &Rational) -> String {
+        if is_short(q) { q.to_string() } else { self.of_digits(q) }
     }
 
-    fn digits(&self, q: &Rational) -> String {
-        let Some(Enclosed { radius, digits, .. }) = self.enclosed else { return q.to_string() };
+    fn of_digits(&self, q: &Rational) -> String {
+        let Self { radius, digits, .. } = *self;
         let balls = Balls::new(u32::try_from(4 * digits).unwrap_or(u32::MAX / 4) + 64);
         let error = Float::with_val(64, radius);
         if q.is_zero() {
@@ -117,11 +110,31 @@ impl SlowFlow {
         let certain = [digits, known.min(digits), 1].into_iter().find_map(|n| decimal(&ball, n));
         certain.unwrap_or_else(|| format!("{UNKNOWN}{}", error_string(&ball, "0")))
     }
+}
+
+impl SlowFlow {
+    /// The name of the small parameter.
+    fn small(&self, style: Style) -> String {
+        print_name(&self.problem.small, style)
+    }
+
+    /// A coefficient and the factor beside it: of enclosures the sign and the decimal digits.
+    fn coefficient(&self, q: &Rational, style: Style) -> (Rational, Option<String>) {
+        self.enclosed.map_or_else(|| (q.clone(), None), |it| it.coefficient(q, style))
+    }
+
+    /// A coefficient: a rational number as it is (of enclosures, a short one), else the digits that are certain, at most those asked
+    /// for, or `0 +- 2.2e-55` where none is.
+    #[must_use]
+    pub fn number(&self, q: &Rational) -> String {
+        self.enclosed.map_or_else(|| q.to_string(), |it| it.number(q))
+    }
 
     /// nu_j^2 or an entry of the shapes: a rational number as it is, otherwise as [`Self::number`].
     #[must_use]
     pub fn number_of_modes(&self, q: &Rational) -> String {
-        if self.system.algebraic.is_none() || *q == 1 { q.to_string() } else { self.digits(q) }
+        let enclosed = self.enclosed.filter(|_| self.system.algebraic.is_some() && *q != 1);
+        enclosed.map_or_else(|| q.to_string(), |it| it.of_digits(q))
     }
 
     /// A polynomial in the amplitudes, its terms collected by amplitudes and phase.

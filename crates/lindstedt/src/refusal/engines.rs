@@ -69,6 +69,11 @@ impl Refusal for ExpandError {
                 "no-value-set",
                 "--set NAME=VALUE; --normalisation free keeps parameters as symbols, and so does --mode 1 (omega0^2*x for the linear part)",
             ),
+            Self::IrrationalNumber { .. } => (
+                NoAnswer,
+                "irrational",
+                "a name in its place (c*x^3) stays a symbol in `lindstedt derive` and has a rational value with --set; `lindstedt simulate` takes it as it is",
+            ),
             Self::UnsupportedTerm { term } if term.contains("t)") || term == "t" => (
                 NoAnswer,
                 "no-expansion",

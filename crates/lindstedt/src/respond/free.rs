@@ -5,7 +5,7 @@ use super::shown::{BITS, polar, proved, real};
 use super::subject::{Subject, Values};
 use super::{Respond, not_determined};
 use crate::refusal::Refused;
-use crate::{Error, Exact, Number};
+use crate::{Error, Exact, Number, Remark};
 use lindstedt_number::ball::Balls;
 use lindstedt_number::interval::Interval;
 use lindstedt_number::real::{Certified, Real};
@@ -185,8 +185,35 @@ impl Subject<'_> {
         Ok(response)
     }
 
+    /// What is said of phases that no force fixes; whether the states of a combination resonance are counted.
+    pub(super) fn free_phases(&self, value: &Response, counted: bool) -> Option<Remark> {
+        if let Some(modes) = &self.rotating.combination {
+            let names: Vec<_> = modes.iter().map(|j| value.coordinates[*j].as_str()).collect();
+            let rest = match counted {
+                true => {
+                    "the other turns freely, in every state with rates of its own; their frequencies differ by these from \
+                     those of the frame"
+                }
+                false => {
+                    "their amplitudes may be steady in other frames than this one; such motions are not among the states \
+                     (`simulate` shows them)"
+                }
+            };
+            return Some(Remark(format!(
+                "combination resonance of {}: the force fixes one combination of their phases, and {rest}",
+                names.join(", ")
+            )));
+        }
+        if self.rotating.unforced().is_some() {
+            return Some(Remark(self.of_free_motion()));
+        }
+        let text = "the resonances of these orders leave a phase free: a motion that is steady in another rotating frame is \
+                    none of these states";
+        (self.rotating.fixed < self.rotating.turns.len()).then(|| Remark(text.to_owned()))
+    }
+
     /// What is said of motions without a force.
-    pub(super) fn of_free_motion(&self) -> String {
+    fn of_free_motion(&self) -> String {
         let family = match self.is_family() {
             true => {
                 "; energy is conserved, the motions are normal modes of that amplitude, which the first unknown alone would have \

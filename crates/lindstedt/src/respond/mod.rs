@@ -152,7 +152,7 @@ impl Oscillator {
         }
         let combination = subject.rotating.combination.as_ref();
         let counted = subject.rotating.free.is_some() && question.sweep.is_none();
-        remarks.extend(subject.of_phases(&value.coordinates, counted).map(Remark));
+        remarks.extend(subject.free_phases(&value, counted));
         remarks.extend(subject.enclosed());
         remarks.extend(missing(&value));
         remarks.extend(subject.doubts(question, &value));
@@ -168,33 +168,6 @@ impl Oscillator {
 }
 
 impl Subject<'_> {
-    /// What the phases that no force fixes mean for the states listed.
-    fn of_phases(&self, coordinates: &[String], counted: bool) -> Option<String> {
-        if let Some(modes) = &self.rotating.combination {
-            let names: Vec<_> = modes.iter().map(|j| coordinates[*j].as_str()).collect();
-            let rest = match counted {
-                true => {
-                    "the other turns freely, in every state with rates of its own; their frequencies differ by these from \
-                     those of the frame"
-                }
-                false => {
-                    "their amplitudes may be steady in other frames than this one; such motions are not among the states \
-                     (`simulate` shows them)"
-                }
-            };
-            return Some(format!(
-                "combination resonance of {}: the force fixes one combination of their phases, and {rest}",
-                names.join(", ")
-            ));
-        }
-        if self.rotating.unforced().is_some() {
-            return Some(self.of_free_motion());
-        }
-        let text = "the resonances of these orders leave a phase free: a motion that is steady in another \
-                    rotating frame is none of these states";
-        (self.rotating.fixed < self.rotating.turns.len()).then(|| text.to_owned())
-    }
-
     /// All states at the values set.
     fn states(&self) -> Result<Response, Error> {
         let values = self.values([None, None]);

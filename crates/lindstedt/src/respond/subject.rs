@@ -57,6 +57,28 @@ pub(super) struct Subject<'a> {
     pub(super) tongues: Tongues,
 }
 
+/// The oscillator with its values, but for those that vary, that of the small parameter, and the amplitude of a family, which is
+/// no parameter of the equations.
+fn with_values(oscillator: &Oscillator, swept: &[Option<String>]) -> Oscillator {
+    let problem = oscillator.problem();
+    let varies = |known: &String| swept.iter().flatten().any(|name| name == known);
+    let mut case = oscillator.clone();
+    for (known, value) in oscillator.all_values() {
+        case = if varies(&known) { case.without(&known) } else { case };
+        if known != *problem.small && !varies(&known) {
+            case = case.with(&known, value);
+        }
+    }
+    if problem.others.is_empty() { case } else { case.without(FAMILY) }
+}
+
+/// Whether a parameter may vary: a symbol of the flow, or the amplitude of a family.
+fn is_open(slow: &SlowFlow, name: &String) -> bool {
+    let family = name == FAMILY && !slow.energy.is_empty();
+    let independent = slow.system.independent.contains(name);
+    family || slow.system.symbols.contains(name) && !is_unit(slow, name) && !independent
+}
+
 /// The flow in the frame where it rests: of modes that a resonance couples, and whole where something varies.
 fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<Rotating, Error> {
     let found = rotating(slow, small, order).map_err(no_frame)?;
@@ -67,22 +89,6 @@ fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<R
         return Err(uncoupled(slow, order));
     }
     Ok(found)
-}
-
-/// The oscillator with the values set, but of the small parameter and of what varies.
-fn at_values(oscillator: &Oscillator, swept: &[Option<String>; 2]) -> Oscillator {
-    let problem = oscillator.problem();
-    let small = problem.small.to_string();
-    let varies = |known: &String| swept.iter().flatten().any(|name| name == known);
-    let mut case = oscillator.clone();
-    for (known, value) in oscillator.all_values() {
-        case = if varies(&known) { case.without(&known) } else { case };
-        if known != small && !varies(&known) {
-            case = case.with(&known, value);
-        }
-    }
-    // That of a family is no parameter of the equations.
-    if problem.others.is_empty() { case } else { case.without(FAMILY) }
 }
 
 impl<'a> Subject<'a> {
@@ -101,19 +107,13 @@ impl<'a> Subject<'a> {
         let small = problem.small.to_string();
         let name = |axis: &Option<Axis>| axis.as_ref().map(|axis| axis.name.clone());
         let mut swept = [name(&question.sweep), name(&question.second)];
-        let case = at_values(oscillator, &swept);
+        let case = with_values(oscillator, &swept);
         let asked = |case: &Oscillator| whole(case.flow(order, work)?.value, order);
         let mut slow = asked(&case);
         let mut factor = None;
-        let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
-        let open = |slow: &SlowFlow, name: &String| {
-            let family = name == FAMILY && !slow.energy.is_empty();
-            let own = slow.system.symbols.contains(name) && !is_unit(slow, name);
-            family || own && !independent(slow, name)
-        };
         if let Some(axis) = &question.sweep
             && axis.name != small
-            && !slow.as_ref().is_ok_and(|slow| open(slow, &axis.name))
+            && !slow.as_ref().is_ok_and(|slow| is_open(slow, &axis.name))
         {
             let name = &axis.name;
             // A frequency: its detuning varies in its place.
@@ -124,7 +124,7 @@ impl<'a> Subject<'a> {
             } else if slow.as_ref().is_ok_and(|slow| is_unit(slow, name)) {
                 return Err(moving_frequency(name));
             } else if let Ok(slow) = &slow {
-                let rate = independent(slow, name);
+                let rate = slow.system.independent.contains(name);
                 let none = || strong_force(&case, axis, work).unwrap_or_else(|| no_resonance(name));
                 return Err(if rate { none() } else { no_part(name) });
             } else if slow.as_ref().is_err_and(|error| is_unset(error, name)) {
@@ -134,9 +134,9 @@ impl<'a> Subject<'a> {
         }
         let slow = slow.map_err(|error| not_weak(oscillator, error))?;
         if let Some(name) =
-            swept.iter().flatten().find(|name| **name != small && !open(&slow, name))
+            swept.iter().flatten().find(|name| **name != small && !is_open(&slow, name))
         {
-            return Err(no_part(name));
+            return Err(if is_unit(&slow, name) { moving_frequency(name) } else { no_part(name) });
         }
         has_numbers(oscillator, &slow)?;
         Self::of((oscillator, question, work), order, slow, swept, factor)

@@ -41,7 +41,9 @@ pub struct SteadyState {
 pub struct SteadyDifference {
     /// The small parameter.
     pub small: String,
-    /// The largest difference of the a_j; nothing where there is no such state or no orbit was found.
+    /// Whether there is such a state and an orbit near it was found.
+    pub orbit: bool,
+    /// The largest difference of the a_j; nothing where it is that of the integration.
     pub amplitude: Option<Estimate>,
     /// That of the phi_j.
     pub phase: Option<Estimate>,
@@ -58,6 +60,7 @@ impl SteadyDifference {
     fn of(small: &Rational, found: Option<&Beside>) -> Self {
         let mut line = Self {
             small: small.to_string(),
+            orbit: false,
             amplitude: None,
             phase: None,
             frequency: None,
@@ -65,20 +68,28 @@ impl SteadyDifference {
             difference: None,
         };
         let Some((state, Some(orbit))) = found else { return line };
-        let largest =
-            |list: &mut dyn Iterator<Item = f64>| Estimate { value: list.fold(0.0, f64::max) };
+        line.orbit = true;
         let size = state.pairs.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let least = RESOLVED * size;
+        let shown = |x: f64, least: f64| (x > least).then(|| Estimate { value: rounded(x) });
+        let largest =
+            |list: &mut dyn Iterator<Item = f64>, least| shown(list.fold(0.0, f64::max), least);
         let pairs = || state.pairs.iter().zip(&orbit.pairs);
         let angle = |x: f64| (x - TAU * (x / TAU).round()).abs();
         let moving = pairs().filter(|(a, _)| a.norm() > 1e-9 * size);
-        line.amplitude = Some(largest(&mut pairs().map(|(a, b)| (a.norm() - b.norm()).abs())));
-        line.phase = Some(largest(&mut moving.map(|(a, b)| angle(a.arg() - b.arg()))));
+        line.amplitude = largest(&mut pairs().map(|(a, b)| (a.norm() - b.norm()).abs()), least);
+        line.phase = largest(&mut moving.map(|(a, b)| angle(a.arg() - b.arg())), RESOLVED);
         let frequency = state.frequency.zip(orbit.frequency);
-        line.frequency = frequency.map(|(a, b)| Estimate { value: (a - b).abs() });
+        line.frequency = frequency.and_then(|(a, b)| shown((a - b).abs(), RESOLVED));
         let difference = pairs().map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        line.difference = Some(difference).filter(|it| *it > RESOLVED * size);
+        line.difference = Some(difference).filter(|it| *it > least);
         line
     }
+}
+
+/// Four digits: the others are those of the integration.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 /// How far two states lie apart.
@@ -117,7 +128,7 @@ impl SteadyStates {
             for k in 1..table.len() {
                 let [small, before] = [k, k - 1].map(|k| question.small[k].to_f64().abs().ln());
                 let pair = table[k].difference.zip(table[k - 1].difference);
-                table[k].slope = pair.map(|(a, b)| (a / b).ln() / (small - before));
+                table[k].slope = pair.map(|(a, b)| rounded((a / b).ln() / (small - before)));
             }
             let amplitudes = state.0.pairs.iter().map(|z| Estimate { value: z.norm() }).collect();
             let observed_order = table.last().and_then(|line| line.slope);

@@ -5,7 +5,7 @@ use super::{Present, both, equation};
 use crate::Document;
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::derivation::resonance::{
-    NormalMode, Polar, Sought, SoughtBranch, Terms, Unit, print_name, print_turns,
+    Enclosed, NormalMode, Polar, Sought, SoughtBranch, Terms, Unit, print_name, print_turns,
 };
 use lindstedt::{Answer, Averaged, SlowFlow};
 
@@ -111,7 +111,8 @@ impl Present for Answer<NormalMode> {
                 }));
             }
         }
-        with_unit(page, mode.unit.as_ref()).words(residual(mode.checked_orders))
+        let residual = residual_within(mode.enclosed, mode.checked_orders);
+        with_unit(page, mode.unit.as_ref()).words(residual)
     }
 }
 
@@ -131,6 +132,18 @@ fn residual(checked_orders: Option<usize>) -> String {
         ),
         None => "Residual: the orders were not checked.".to_owned(),
     }
+}
+
+/// The same where coefficients are enclosed.
+fn residual_within(enclosed: Option<Enclosed>, checked_orders: Option<usize>) -> String {
+    let (Some(enclosed), Some(last)) = (enclosed, checked_orders) else {
+        return residual(checked_orders);
+    };
+    format!(
+        "Coefficients within {:.1e}. Residual: the expansion substituted into the equation encloses zero at orders 0 to {last}, \
+         within {:.1e}.",
+        enclosed.radius, enclosed.residual
+    )
 }
 
 struct Board<'a>(&'a SlowFlow);
@@ -329,13 +342,6 @@ impl Board<'_> {
                  order {order}."
             ));
         }
-        match (self.0.enclosed, self.0.checked_orders) {
-            (Some(enclosed), Some(last)) => page.words(format!(
-                "Coefficients within {:.1e}. Residual: the expansion substituted into the equation encloses zero at orders 0 \
-                 to {last}, within {:.1e}.",
-                enclosed.radius, enclosed.residual
-            )),
-            (_, checked) => page.words(residual(checked)),
-        }
+        page.words(residual_within(self.0.enclosed, self.0.checked_orders))
     }
 }

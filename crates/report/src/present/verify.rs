@@ -32,8 +32,11 @@ fn steady(value: &SteadyStates, small: Text) -> Document {
     if let Some(reason) = &value.refused {
         return page.words(format!("not compared: {reason}"));
     }
-    let short =
-        |x: &Option<Estimate>| x.as_ref().map_or("none".to_owned(), |x| format!("{:.3e}", x.value));
+    let short = |x: &Option<Estimate>, orbit: bool| match x {
+        Some(x) => format!("{:.3e}", x.value),
+        None if orbit => "below 1e-12".to_owned(),
+        None => "no orbit".to_owned(),
+    };
     let frequency = value.states.iter().flat_map(|it| &it.table).any(|it| it.frequency.is_some());
     let head = ["a".into(), small, "amplitude".into(), "phase".into()].into_iter();
     let head = head.chain(frequency.then(|| "frequency".into())).chain(["local order".into()]);
@@ -42,9 +45,9 @@ fn steady(value: &SteadyStates, small: Text) -> Document {
         let own: Vec<String> = state.amplitudes.iter().map(|a| format!("{:.6}", a.value)).collect();
         for line in &state.table {
             let mut cells = vec![own.join(", "), line.small.clone()];
-            cells.extend([short(&line.amplitude), short(&line.phase)]);
-            cells.extend(frequency.then(|| short(&line.frequency)));
-            cells.push(line.slope.map(|slope| format!("{slope:.4}")).unwrap_or_default());
+            cells.extend([&line.amplitude, &line.phase].map(|x| short(x, line.orbit)));
+            cells.extend(frequency.then(|| short(&line.frequency, line.orbit)));
+            cells.push(line.slope.map(|slope| format!("{slope:.3}")).unwrap_or_default());
             table = table.row(cells);
         }
     }
