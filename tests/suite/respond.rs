@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use lindstedt::grid::Axis;
-use lindstedt::respond::{Response, State};
+use lindstedt::respond::{Point, Response, State, States};
 use lindstedt::unstable::orbit::steady::{ComplexTerm, Flow, zero_near};
 use lindstedt::unstable::orbit::{Field, Kind, Request, Start, prove};
 use lindstedt::{Exact, Oscillator, Refusal, Respond, Status, Verify, Work};
@@ -65,6 +65,71 @@ fn steady_amplitudes_against_proved_orbits() {
     }
 }
 
+/// The exponents of the subharmonic states of order three at eps = 1/20 are the Floquet exponents of the orbits to five
+/// digits, those of the saddle included: Newton's method on the map of a period, with its derivative by Runge and Kutta.
+#[test]
+fn exponents_of_subharmonic_orbits() {
+    let equation = "x'' + x + eps*(x'/50 + x^3/4) = 4*cos((3 + eps*sigma)*t)";
+    let found = ask(equation, &[("eps", "1/20"), ("sigma", "1/2")], &to_order(4));
+    let (eps, omega) = (0.05, 3.0 + 0.05 * 0.5);
+    let period = 6.0 * std::f64::consts::PI / omega;
+    // x, x', and the two columns of the derivative.
+    let rate = |t: f64, y: &[f64; 6]| {
+        let force = 4.0 * (omega * t).cos() - y[0] - eps * (y[1] / 50.0 + y[0].powi(3) / 4.0);
+        let slope = -1.0 - 0.75 * eps * y[0] * y[0];
+        let column = |u: f64, v: f64| slope * u - eps * v / 50.0;
+        [y[1], force, y[3], column(y[2], y[3]), y[5], column(y[4], y[5])]
+    };
+    let map = |x: [f64; 2]| {
+        let mut y = [x[0], x[1], 1.0, 0.0, 0.0, 1.0];
+        let (steps, along) = (1500, |y: &[f64; 6], k: &[f64; 6], h: f64| -> [f64; 6] {
+            std::array::from_fn(|i| y[i] + h * k[i])
+        });
+        let h = period / f64::from(steps);
+        for n in 0..steps {
+            let t = h * f64::from(n);
+            let a = rate(t, &y);
+            let b = rate(t + h / 2.0, &along(&y, &a, h / 2.0));
+            let c = rate(t + h / 2.0, &along(&y, &b, h / 2.0));
+            let d = rate(t + h, &along(&y, &c, h));
+            y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        }
+        y
+    };
+    let mut saddles = 0;
+    assert_eq!(found.states[0].count, 7);
+    for state in &found.states[0].list {
+        let a: f64 = state.amplitudes[0].decimal.parse().unwrap();
+        let phase = state.phases[0].as_ref().map_or(0.0, |phi| phi.decimal.parse::<f64>().unwrap());
+        let mut x = [a * phase.cos() + 4.0 / (1.0 - omega * omega), -omega / 3.0 * a * phase.sin()];
+        let mut slopes = [0.0; 4];
+        for _ in 0..8 {
+            let [p, q, b, d, c, e] = map(x);
+            slopes = [b, c, d, e];
+            let determinant = (b - 1.0) * (e - 1.0) - c * d;
+            let [u, v] = [p - x[0], q - x[1]];
+            x[0] -= ((e - 1.0) * u - c * v) / determinant;
+            x[1] -= ((b - 1.0) * v - d * u) / determinant;
+        }
+        let (trace, determinant) =
+            (slopes[0] + slopes[3], slopes[0] * slopes[3] - slopes[1] * slopes[2]);
+        let gap = trace * trace / 4.0 - determinant;
+        // The largest real part of ln(multiplier)/period, and the imaginary part.
+        let known = match gap > 0.0 {
+            true => [(trace / 2.0 + gap.sqrt()).abs().ln() / period, 0.0],
+            false => [determinant.ln() / 2.0, (-gap).sqrt().atan2(trace / 2.0)].map(|x| x / period),
+        };
+        let own = state.exponents.iter().map(|[re, im]| [re.value, im.value.abs()]);
+        let own = own.max_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
+        let size = known[0].hypot(known[1]);
+        let error = (own[0] - known[0]).hypot(own[1] - known[1]) / size;
+        println!("a = {a}: {own:?}, {known:?}, {error:e}");
+        assert!(error < 1e-5, "a = {a}: {own:?}, {known:?}");
+        saddles += usize::from(known[0] > 0.0);
+    }
+    assert_eq!(saddles, 3);
+}
+
 /// The Bogdanov-Takens point of the forced oscillator of van der Pol at eps = 1/10: that of the stroboscopic map lies at
 /// sigma = 0.2484755, F = 1.0186359 (both multipliers 1; integration with 13 digits). The errors of orders 1, 2, 3, 4 are
 /// 1.9e-2, 2.7e-4, 1.6e-5, 1.3e-6.
@@ -124,6 +189,90 @@ fn sweeps_of_the_frequency() {
         let [a, b] = [&a.value, &b.value].map(|value| value.decimal.parse::<f64>().unwrap());
         assert!((1.0 + 0.1 * a - b).abs() < 1e-12);
     }
+}
+
+/// A frequency is answered alone as in a range: around the resonance of the lowest order that couples the force. At 1/2 the
+/// cube couples none, so that a range may pass it.
+#[test]
+fn one_frequency_and_a_range() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*cos(omega*t)/2";
+    let sweep = |text| Respond { sweep: Some(Axis::parse(text).unwrap()), ..to_order(2) };
+    for (text, at) in [("omega=1/2..7/5:201", "23/20"), ("omega=23/20,6/5,5/4", "6/5")] {
+        let range = ask(equation, &[("eps", "1/10")], &sweep(text));
+        let at: Rational = at.parse().unwrap();
+        let of = |states: &&States| {
+            let value = states.value.as_ref().unwrap().decimal.parse::<f64>().unwrap();
+            (value - at.to_f64()).abs() < 1e-9
+        };
+        let set = [("eps", "1/10"), ("omega", &*at.to_string())];
+        let alone = ask(equation, &set, &to_order(2));
+        let amplitudes = |states: &States| -> Vec<f64> {
+            let first = |state: &State| state.amplitudes[0].decimal.parse().unwrap();
+            states.list.iter().map(first).collect()
+        };
+        let own = amplitudes(&alone.states[0]);
+        match range.states.iter().find(of) {
+            Some(states) => assert_eq!(amplitudes(states).len(), own.len()),
+            // Between two values searched: on the branch.
+            None => {
+                let near = |a: f64| {
+                    let gap = |point: &Point| {
+                        (point.value.value - at.to_f64()).hypot(point.amplitudes[0].value - a)
+                    };
+                    let points = range.branches.iter().flat_map(|branch| &branch.points);
+                    points.map(gap).fold(f64::INFINITY, f64::min)
+                };
+                assert!(own.iter().all(|a| near(*a) < 0.02), "{own:?}");
+            }
+        }
+    }
+    let refused = |omega: &str| {
+        let case = Oscillator::parse(equation).unwrap().set("eps", "1/10").unwrap();
+        let case = case.set("omega", omega).unwrap();
+        case.respond(&to_order(2), &Work::default()).unwrap_err().to_string()
+    };
+    // At resonances of the force where the cube couples nothing, and beside none.
+    for omega in ["1/2", "2", "5"] {
+        assert!(refused(omega).contains("no resonance couples"), "{omega}");
+    }
+}
+
+/// Combination resonance of 1 and 2 over the detuning: at the values searched the motions are those of single values, and
+/// branches pass them.
+#[test]
+fn combination_resonance_over_the_detuning() {
+    let equation = "x'' + x + eps*(x'/5 + x^3 + 2*y*cos((3 + eps*sigma)*t)); \
+                    y'' + 4*y + eps*(y'/5 + y^3 + 2*x*cos((3 + eps*sigma)*t))";
+    let sweep = Some(Axis::parse("sigma=-1,1/2,2").unwrap());
+    let found = ask(equation, &[("eps", "1/10")], &Respond { sweep, ..to_order(1) });
+    for states in &found.states {
+        let sigma = states.value.as_ref().unwrap();
+        let alone = ask(equation, &[("eps", "1/10"), ("sigma", &sigma.decimal)], &to_order(1));
+        let alone = &alone.states[0];
+        assert_eq!((states.count, states.count_proved), (alone.count, true), "{sigma}");
+        for (state, own) in states.list.iter().zip(&alone.list) {
+            let gap = |(a, b): (f64, f64)| (a - b).abs();
+            let pairs = decimals(&state.amplitudes).into_iter().zip(decimals(&own.amplitudes));
+            assert!(pairs.map(gap).all(|gap| gap < 1e-9), "{sigma}");
+            // On a branch.
+            let a = decimals(&state.amplitudes);
+            let value: f64 = sigma.decimal.parse().unwrap();
+            let gap = |point: &Point| {
+                let [b, c] = [0, 1].map(|j| point.amplitudes[j].value - a[j]);
+                b.hypot(c) + (point.value.value - value).abs()
+            };
+            let points = found.branches.iter().flat_map(|branch| &branch.points);
+            let near = points.map(gap).fold(f64::INFINITY, f64::min);
+            assert!(near < 0.15, "{sigma}: {a:?} {near}");
+        }
+    }
+    let moving = found.states.iter().map(|states| states.list.len()).max();
+    assert!(moving > Some(1) && found.branches.len() > 1);
+    // Rest loses its stability at mu^2 + sigma^2/4 = h^2/(16 nu_1 nu_2); no fold is there.
+    let edge = 2.0 * (0.125f64 - 0.01).sqrt();
+    let hopf: Vec<f64> = found.hopf.iter().map(|it| it.value.decimal.parse().unwrap()).collect();
+    assert!(hopf.len() == 2 && hopf.iter().all(|s| (s.abs() - edge).abs() < 1e-6), "{hopf:?}");
+    assert_eq!(found.folds.len(), 0);
 }
 
 /// Three states that are each other turned by a third of a turn lie within the largest amplitude together or not at all.

@@ -161,7 +161,9 @@ fn henon_heiles() {
     // K6 = -235/3456 at q_2 = 1 alone. Along q_1 = 0, K = I - (5/48)(2 I)^2 - (235/3456)(2 I)^3; of y with the harmonics z and
     // -z^2/3, ... the action is omega sum_n n^2 |c_n|^2, both ends of the spectrum counted: with r = |z|^2 and omega =
     // 1 - 5 r/3 it is I = 2 r (1 - 11 r/9). So omega = dK/dI = 1 - 5 I/6 - 235 I^2/144 has r^2 times:
-    let sixth = q(-235, 36) + q(5, 3) * q(11, 9);
+    let k6 = q(-235, 3456);
+    // dK6/dI = 3 K6 2^3 I^2.
+    let sixth = k6 * q(3 * 8 * 4, 1) + q(5, 3) * q(11, 9);
     let along = terms(&a, &found.flow[1][4]);
     assert_eq!(sixth, q(-485, 108));
     for (monomial, size) in by_hand(&[im("z2^3 zbar2^2", -485, 108)]) {

@@ -7,6 +7,7 @@ use lindstedt_derivation::check_parameters;
 use lindstedt_derivation::resonance::{self, NormalMode, ResonanceError, Sought, SoughtBranch};
 use lindstedt_equation::Expression;
 use lindstedt_expand::Excitation;
+use rug::Rational;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -137,12 +138,25 @@ impl Oscillator {
 
     /// The slow flow for those who do not print it: its symbols may have any names.
     pub(crate) fn flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
+        self.flow_from(None, order, work)
+    }
+
+    /// The same with the force detuned from a rate where one is given.
+    pub(crate) fn flow_from(
+        &self,
+        rate: Option<&Rational>,
+        order: usize,
+        work: &Work,
+    ) -> Result<Answer<SlowFlow>, Error> {
         self.check_frequencies()?;
         let start = Instant::now();
         self.values_without_pi()?;
         let settings = self.averaging(order, work);
-        let found =
-            resonance::slow_flow(self.problem(), &settings, &mut |progress| work.goes_on(progress));
+        let (problem, mut goes_on) = (self.problem(), |progress| work.goes_on(progress));
+        let found = match rate {
+            None => resonance::slow_flow(problem, &settings, &mut goes_on),
+            Some(rate) => resonance::slow_flow_from(problem, &settings, rate, &mut goes_on),
+        };
         let value = found.map_err(|error| self.refusal(error.into()))?;
         let mut remarks = self.remarks().to_vec();
         let checked = value.checked_orders.is_some();

@@ -368,6 +368,20 @@ const TABLE: &[(i32, &str, &str, &str, &str)] = &[
     ),
     (
         3,
+        "no-rational-modes",
+        "derive \"x'' + (2 + eps*a + eps*cos(2*sqrt(2)*t))*x\" --unknown a",
+        "with s = sqrt(2)*t the equation is divided by sqrt(2)^2",
+        "derive \"x'' + (1 + eps*a/2 + eps*cos(2*t)/2)*x\" --unknown a --order 1",
+    ),
+    (
+        3,
+        "no-expansion",
+        "derive \"x'' + 2*omega0^2*x + eps*x^3\" --normalisation free --order 1",
+        "omega0^2*x in the place of",
+        "derive \"x'' + omega0^2*x + eps*x^3\" --normalisation free --order 1",
+    ),
+    (
+        3,
         "not-diagonalisable",
         "derive \"x'' + x + y; y'' + y + eps*x^3\" --order 1",
         "differ a little",

@@ -61,6 +61,14 @@ pub enum ResonanceError {
         /// The unknowns.
         unknowns: usize,
     },
+    /// A parameter is sought where frequencies are no rational numbers.
+    #[error("a parameter is sought where frequencies are rational: their squares are {squares}")]
+    SoughtOfRoots {
+        /// The squares.
+        squares: String,
+        /// The root of which the frequencies are multiples, where it is one.
+        unit: Option<String>,
+    },
     /// A parameter that is sought, without the value it starts from.
     #[error("the series of {name} starts from its value at order zero, which is not given")]
     NoStart {

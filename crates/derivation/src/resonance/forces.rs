@@ -321,25 +321,56 @@ pub(super) fn near(rate: &Rational, frequencies: &[Rational]) -> Option<Rational
         return None;
     }
     let mut best: Option<(u32, Rational, Rational)> = None;
-    for k in combinations(frequencies.len()) {
-        let sum: Rational = k.iter().zip(frequencies).map(|(k, nu)| Rational::from(nu * *k)).sum();
-        let size: u32 = k.iter().map(|k| k.unsigned_abs()).sum();
-        for m in 1..=EXACT.saturating_sub(size) {
-            let at = Rational::from(&sum / m).abs();
-            if at == *rate {
-                return None;
-            }
-            let gap = Rational::from(&at - rate).abs() / rate;
-            let close = !at.is_zero() && size + m <= NEAR && gap <= Rational::from((1, 10));
-            let better = |(order, other, known): &(u32, Rational, Rational)| {
-                (size + m, &gap, &at) < (*order, other, known)
-            };
-            if close && best.as_ref().is_none_or(better) {
-                best = Some((size + m, gap, at));
-            }
+    for (size, at) in rates(frequencies) {
+        if at == *rate {
+            return None;
+        }
+        let gap = Rational::from(&at - rate).abs() / rate;
+        let close = size <= NEAR && gap <= Rational::from((1, 10));
+        let better = |(order, other, known): &(u32, Rational, Rational)| {
+            (size, &gap, &at) < (*order, other, known)
+        };
+        if close && best.as_ref().is_none_or(better) {
+            best = Some((size, gap, at));
         }
     }
     best.map(|(_, _, at)| at)
+}
+
+/// The rates of forces at the resonances that are looked for, of which this one is at most a half of them away: those of the
+/// fewest frequencies first, then the nearest. None where it is at one of them itself.
+pub(super) fn around(rate: &Rational, frequencies: &[Rational]) -> Vec<Rational> {
+    let mut list: Vec<(u32, Rational, Rational)> = Vec::new();
+    for (size, at) in rates(frequencies).into_iter().filter(|(size, _)| *size <= NEAR) {
+        let gap = Rational::from(&at - rate).abs() / &at;
+        if gap.is_zero() {
+            return Vec::new();
+        }
+        if gap <= Rational::from((1, 2)) {
+            list.push((size, gap, at));
+        }
+    }
+    list.sort();
+    let mut list: Vec<Rational> = list.into_iter().map(|(_, _, at)| at).collect();
+    for k in (1..list.len()).rev() {
+        if list[..k].contains(&list[k]) {
+            list.remove(k);
+        }
+    }
+    list
+}
+
+/// sum |k_j| + m and |sum_j k_j nu_j|/m of the resonances that are known.
+fn rates(frequencies: &[Rational]) -> Vec<(u32, Rational)> {
+    let mut list = Vec::new();
+    for k in combinations(frequencies.len()) {
+        let sum: Rational = k.iter().zip(frequencies).map(|(k, nu)| Rational::from(nu * *k)).sum();
+        let size: u32 = k.iter().map(|k| k.unsigned_abs()).sum();
+        let orders = 1..=EXACT.saturating_sub(size);
+        list.extend(orders.map(|m| (size + m, Rational::from(&sum / m).abs())));
+    }
+    list.retain(|(_, at)| !at.is_zero());
+    list
 }
 
 /// Of a resonance that holds exactly.

@@ -58,7 +58,7 @@ use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm};
 use rug::Rational;
 use std::collections::BTreeMap;
-use system::refuse_delays;
+use system::{Detuned, refuse_delays};
 
 type Element = AmplitudeElement<Whole>;
 
@@ -213,7 +213,7 @@ impl SlowFlow {
 pub fn is_beside(problem: &Problem, given: &BTreeMap<String, Exact>) -> bool {
     let equations: Vec<Expression> = problem.equations().cloned().collect();
     let cards = |name: &str| value(problem, given, name);
-    let system = System::of(&equations, given, &cards, Names(problem), true);
+    let system = System::of(&equations, given, &cards, Names(problem), Detuned::Beside);
     system.is_ok_and(|system| system.beside.is_some())
 }
 
@@ -244,7 +244,7 @@ pub fn slow_flow(
     settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
-    of_problem(problem, settings, true, observer)
+    of_problem(problem, settings, Detuned::Beside, observer)
 }
 
 /// As [`slow_flow`], with a force beside a resonance at the frequency that it has, however small the small parameter
@@ -268,13 +268,38 @@ pub fn slow_flow_undetuned(
     settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
-    of_problem(problem, settings, false, observer)
+    of_problem(problem, settings, Detuned::Not, observer)
+}
+
+/// As [`slow_flow`], with the only force detuned from this rate, in multiples of the unit: one of
+/// [`System::resonances_around`].
+///
+/// # Errors
+/// As there.
+///
+/// ```
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow_from};
+/// use lindstedt_problem_file::ProblemFile;
+/// let text = "equation = \"x'' + x + eps*x^3 = eps*cos(6/5*t)\"";
+/// let problem = ProblemFile::parse(text)?.problem;
+/// let settings = AveragingSettings::default();
+/// let found = slow_flow_from(&problem, &settings, &1.into(), &mut |_| true)?;
+/// assert_eq!((found.system.force(), found.system.resonances_around().len()), (1.into(), 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn slow_flow_from(
+    problem: &Problem,
+    settings: &AveragingSettings,
+    rate: &Rational,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<SlowFlow, Error> {
+    of_problem(problem, settings, Detuned::From(rate), observer)
 }
 
 fn of_problem(
     problem: &Problem,
     settings: &AveragingSettings,
-    detune: bool,
+    detuned: Detuned<'_>,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
     let card = |name: &str| problem.parameters.iter().any(|card| card.name == *name);
@@ -289,7 +314,7 @@ fn of_problem(
     }
     equations.iter().try_for_each(|e| check_delays(e, &settings.parameters))?;
     let cards = |name: &str| value(problem, &settings.parameters, name);
-    let system = System::of(&equations, &settings.parameters, &cards, Names(problem), detune)?;
+    let system = System::of(&equations, &settings.parameters, &cards, Names(problem), detuned)?;
     let mut job = flow::Job { problem, system, settings };
     if !job.system.is_exact() {
         return enclosed::derived(&job, observer);

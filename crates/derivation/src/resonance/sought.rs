@@ -12,9 +12,8 @@ mod start;
 
 use super::flow::{Symbols, compiled_form, wave_of};
 use super::forces::{divisor, is_wave};
-use super::modes::modes_refused;
 use super::print::print_powers;
-use super::system::refuse_delays;
+use super::system::{Detuned, refuse_delays};
 use super::{Element, Names, ResonanceError, System, Terms};
 use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
@@ -176,13 +175,15 @@ fn sought_at(
     let cards = |known: &str| value(problem, &given, known).filter(|_| known != name);
     let equations = [equation];
     refuse_delays(&equations, Names(problem))?;
-    let system = System::of(&equations, &given, &cards, Names(problem), false)?;
+    let system = System::of(&equations, &given, &cards, Names(problem), Detuned::Not)?;
     if let Some(name) = system.open_frequency() {
         let problem = problem.name.to_string();
         return Err(Error::Unset { problem, name: name.clone() });
     }
     if !system.is_exact() || system.unit.is_some() {
-        return Err(modes_refused(&system.plain_squares()).into());
+        let squares: Vec<String> = system.plain_squares().iter().map(ToString::to_string).collect();
+        let (squares, unit) = (squares.join(", "), system.unit.map(|unit| unit.name));
+        return Err(ResonanceError::SoughtOfRoots { squares, unit }.into());
     }
     if system.forces.len() > 1 {
         return Err(ResonanceError::SecondPhase { phases: system.forces.len() }.into());

@@ -2,7 +2,7 @@
 
 use super::algebraic::{AlgebraicModes, Entry};
 use super::forces::{
-    Angles, InPhases, Phase, harmonic, is_internal, is_wave, leading_rates, near, phases,
+    Angles, InPhases, Phase, around, harmonic, is_internal, is_wave, leading_rates, near, phases,
 };
 use super::modes::{Matrix, Spectrum, inverted, modes_refused, spectrum};
 use super::unit::Unit;
@@ -46,6 +46,14 @@ pub struct System {
     pub bound: BTreeMap<String, Rational>,
     /// The frequency that was given where it lies beside a resonance, and the name of its detuning.
     pub beside: Option<Beside>,
+}
+
+/// From which rate a force is detuned: one that it lies beside, none, or this one.
+#[derive(Clone, Copy)]
+pub(super) enum Detuned<'a> {
+    Beside,
+    Not,
+    From(&'a Rational),
 }
 
 /// A frequency beside a resonance: rate = Omega + eps * symbol.
@@ -229,13 +237,13 @@ impl Prepared {
 }
 
 impl System {
-    /// What is averaged. A force beside a resonance is detuned by a symbol where `detune` says so.
+    /// What is averaged, with a force detuned by a symbol as it is asked for.
     pub(super) fn of(
         equations: &[Expression],
         given: &BTreeMap<String, Exact>,
         cards: &dyn Fn(&str) -> Option<Exact>,
         names: Names<'_>,
-        detune: bool,
+        detuned: Detuned<'_>,
     ) -> Result<Self, Error> {
         let prepared = Prepared::of(equations, given, cards, names)?;
         let (mass, stiffness) = (&prepared.mass, &prepared.stiffness);
@@ -290,7 +298,16 @@ impl System {
             // Nothing says that they are independent of square roots.
             return Err(modes_refused(&system.squares).into());
         }
-        Ok(if detune && system.is_exact() { system.detuned() } else { system })
+        let rate = system.force();
+        let at = match detuned {
+            Detuned::From(at) => Some(at.clone()).filter(|at| *at != rate),
+            Detuned::Beside if rate > 0 => near(&rate, &system.frequencies),
+            _ => None,
+        };
+        Ok(match at.filter(|_| system.is_exact()) {
+            Some(at) => system.detuned_from(at),
+            None => system,
+        })
     }
 
     /// Whether all frequencies are rational multiples of the unit.
@@ -317,6 +334,15 @@ impl System {
     #[must_use]
     pub fn unit_value(&self, values: &dyn Fn(&str) -> Option<Exact>, balls: Balls) -> Option<Ball> {
         self.unit.as_ref().map_or_else(|| Some(balls.one()), |unit| unit.value(values, balls))
+    }
+
+    /// The rates of the only force at resonances that this one is around, a half of them away at most, those of the
+    /// lowest order first, then the nearest; none where it is at one.
+    #[must_use]
+    pub fn resonances_around(&self) -> Vec<Rational> {
+        let rate = self.beside.as_ref().map_or_else(|| self.force(), |beside| beside.rate.clone());
+        let taken = rate > 0 && self.is_exact();
+        if taken { around(&rate, &self.frequencies) } else { Vec::new() }
     }
 
     /// Omega of the only force, where it is a multiple of the unit; else 0.
@@ -346,11 +372,10 @@ impl System {
         self.equations.iter().map(|e| e.map(&named)).collect()
     }
 
-    /// With the symbol of the detuning where the only force is beside a resonance.
-    fn detuned(mut self) -> Self {
+    /// With the symbol of the detuning of the only force from a rate.
+    fn detuned_from(mut self, at: Rational) -> Self {
         let rate = self.force();
-        let at = (rate > 0).then(|| near(&rate, &self.frequencies)).flatten();
-        let (Some(at), [phase]) = (at, &mut self.forces[..]) else { return self };
+        let [phase] = &mut self.forces[..] else { return self };
         let free = |name: &&str| !self.symbols.iter().any(|known| known == name);
         let symbol = ["sigma", "detuning", "sigma_0"].into_iter().find(free).unwrap_or("sigma_1");
         self.symbols.push(symbol.to_owned());

@@ -36,7 +36,9 @@ fn two_masses() {
         .zip(&mode.frequency_squared)
         .map(|(n, terms)| terms[0].re.to_f64() * 0.4f64.powi(n))
         .sum();
-    assert!((sum.sqrt() - 1.0333527927773).abs() < 3e-9);
+    // Order 8 errs by 2.2e-9.
+    let error = (sum.sqrt() - 1.0333527927773).abs();
+    assert!((error / 2.2e-9 - 1.0).abs() < 0.05, "{error:e}");
     // Out of phase: nu^2 = 3 is no square, and x - y has no harmonic of the first order in eps but psi, 3 psi.
     let second = found(TWO_MASSES, 2, 1).unwrap();
     let shapes = second.solution.iter().map(|x| second.print_shape(&x[0], Style::Text));

@@ -162,14 +162,19 @@ fn a_symbol_named_like_an_order_is_refused() {
     assert!(refused.starts_with("the answer is written with x_1, a coefficient:"), "{refused}");
 }
 
-/// The squares in a refusal are numbers, not multiples of the root that frequencies are counted in.
+/// The squares in a refusal are numbers, not multiples of the root that frequencies are counted in; in its time, which the
+/// hint asks for, the parameter is found.
 #[test]
 fn a_frequency_that_is_a_root_is_refused_with_its_square() {
     let text = "equation = \"x'' + 8*x + eps*m*x - eps*x*cos(2*sqrt(8)*t)\"\n[parameters]\nm = { value = \"0\" }";
     let problem = ProblemFile::parse(text).unwrap().problem;
     let refused = sought(&problem, "m", &AveragingSettings::default(), &mut |_| true);
     let refused = refused.err().unwrap().to_string();
-    assert!(refused.contains("the squares are 8"), "{refused}");
+    assert!(refused.contains("squares are 8"), "{refused}");
+    // s = sqrt(2) t; in 2 s the force is 2 Q cos(4 s) with Q = q/16: 1 + q a/8 = a_1(Q) = 1 + Q - Q^2/8.
+    let own = found("x'' + 4*x + q*a*x/2 - q*x*cos(4*t)/2", 0, 2);
+    let series: Vec<_> = own.branches.iter().map(|b| own.print_series(b, Style::Text)).collect();
+    assert_eq!(series, ["1/2 - 1/256*q", "-1/2 - 1/256*q"]);
 }
 
 /// omega^2 = 1 + 3/4 e + 3/128 e^2 of x'' + x + e x^3, with the first harmonic 1, read backwards; with a force the

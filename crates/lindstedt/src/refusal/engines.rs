@@ -32,7 +32,7 @@ const FRACTION: &str =
 
 /// What to do where a frequency has no value,
 const FREQUENCY: &str = "--set NAME=VALUE, for example 1/10; it stays a symbol where the factors of the linear part are squares of its \
-     rational multiples: omega0^2*x, 4*omega0^2*y";
+     rational multiples, omega0^2*x and 4*omega0^2*y; in the place of 2*omega0^2 write a symbol of its own, omega1^2";
 /// or the ratio of two is not known.
 const UNKNOWN_RATIO: &str = "write both as multiples of one, as (2*omega0)^2*y and cos((omega0 + eps*sigma)*t), the difference as a \
      detuning eps*sigma, or --set both";
@@ -85,6 +85,12 @@ impl Refusal for ExpandError {
                 "no-expansion",
                 "damping, delays and nonlinear terms need a factor of the small parameter: eps*x', \
                  eps*x(t - T); `lindstedt simulate` takes the equation as it is",
+            ),
+            Self::StiffnessNotSquare => (
+                NoAnswer,
+                "no-expansion",
+                "write the frequency as one symbol, omega0^2*x in the place of k*x or 2*omega0^2*x, or --set gives it a value; \
+                 `lindstedt simulate` takes it as it is",
             ),
             Self::TurnsBySymbols { .. } => (NoAnswer, "no-expansion", "--set them"),
             Self::NegativeStiffness => (
@@ -158,7 +164,16 @@ impl Refusal for ResonanceError {
                 "no-rational-modes",
                 "the slow flow (`derive` without --mode) encloses simple ones; a small difference is a detuning eps*sigma*x",
             ),
-            Self::NoRationalModes { .. } | Self::IrrationalMode { .. } => (
+            Self::SoughtOfRoots { unit: Some(unit), .. } => {
+                let hint = format!(
+                    "count the time in units of 1/{unit}: with s = {unit}*t the equation is divided by {unit}^2, and its forces \
+                     are cos(m*s)"
+                );
+                return (NoAnswer, "no-rational-modes", hint);
+            }
+            Self::NoRationalModes { .. }
+            | Self::IrrationalMode { .. }
+            | Self::SoughtOfRoots { .. } => (
                 NoAnswer,
                 "no-rational-modes",
                 "needs rational frequencies; a small difference is a detuning eps*sigma*x",

@@ -38,6 +38,14 @@ fn refuse_forced(question: &Respond) -> Result<(), Error> {
     Err(Refused::usage(code, message, "`lindstedt simulate` shows motions").into())
 }
 
+impl States {
+    /// Where the motions are whose phase is free.
+    pub(super) fn turning(&self) -> Vec<Vec<f64>> {
+        let moving = self.list.iter().filter(|state| !state.drift.is_empty());
+        moving.map(|state| state.at.clone()).collect()
+    }
+}
+
 impl Subject<'_> {
     /// Adds the motions that are steady but for the free phase, in frames of their own, at values of the parameters.
     pub(super) fn with_free_phase(
@@ -146,27 +154,41 @@ impl Subject<'_> {
         let mut found = Vec::new();
         for sample in &samples {
             let states = self.in_step(free, reach, Some(sample))?;
-            let moving = states.list.iter().filter(|state| !state.drift.is_empty());
-            found.push((Value::from(sample), moving.map(|state| state.at.clone()).collect()));
+            found.push((Value::from(sample), states.turning()));
             response.states.push(states);
         }
-        let open = self.open()[0].ok_or_else(not_determined)?;
         let course = self.course(&samples, axis, reach)?;
-        let course = steady::Course { parameter: open, ..course };
+        self.follow_turning(free, &found, &course, &mut response)?;
+        Ok(response)
+    }
+
+    /// Adds the branches that pass motions found at values of the parameter, and where they change.
+    pub(super) fn follow_turning(
+        &self,
+        free: &FreePhase,
+        found: &[(Value, Vec<Vec<f64>>)],
+        course: &steady::Course,
+        response: &mut Response,
+    ) -> Result<(), Error> {
+        let open = self.open()[0].ok_or_else(not_determined)?;
+        let course = steady::Course { parameter: open, ..course.clone() };
         let values = self.values([None, None]);
         let mut known: Vec<&Located> = Vec::new();
-        let branches = free.branches(&values, &found, &course);
+        let branches = free.branches(&values, found, &course);
+        let before = response.branches.len();
         for Turning { branch, rates, changes } in &branches {
             let mut shown = self.shown_branch(branch);
             for (point, delta) in shown.points.iter_mut().zip(rates) {
                 point.frequency = self.frequency(*delta, self.rate(Some(point.value.value)));
             }
             response.branches.push(shown);
-            for found in changes {
+            // Where they meet rest the other half of the branch begins, which is the same motions.
+            let at_rest = |it: &&Located| it.at[..4].iter().all(|x| x.abs() < NEAR * course.reach);
+            for found in changes.iter().filter(|it| !at_rest(it)) {
                 // Each of two branches knows their crossing.
                 let near = |it: &&Located| {
-                    let same =
-                        it.change == found.change && free.same(&it.at, &found.at, NEAR * reach);
+                    let same = it.change == found.change
+                        && free.same(&it.at, &found.at, NEAR * course.reach);
                     same && (it.at[4] - found.at[4]).abs()
                         < NEAR * (course.range[1] - course.range[0])
                 };
@@ -179,10 +201,11 @@ impl Subject<'_> {
                     steady::Change::Hopf => &mut response.hopf,
                     _ => &mut response.crossings,
                 };
-                list.extend(self.shown_change(found));
+                let branch = found.branch + before;
+                list.extend(self.shown_change(&Located { branch, ..found.clone() }));
             }
         }
-        Ok(response)
+        Ok(())
     }
 
     /// What is said of phases that no force fixes; whether the states of a combination resonance are counted.

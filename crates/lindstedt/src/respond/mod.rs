@@ -14,7 +14,7 @@ use crate::{Answer, Error, Exact, Oscillator, Remark, Standing, Work};
 pub use answer::{
     Branch, Change, Corner, Curve, Destination, Estimate, Point, Reading, Response, State, States,
 };
-use lindstedt_orbit::steady::{self, Course, Fate, Plane, Survey, settle};
+use lindstedt_orbit::steady::{self, Course, Fate, Plane, Survey, Value, settle};
 pub(crate) use orbit::Beside;
 use std::time::Instant;
 use subject::Subject;
@@ -151,7 +151,7 @@ impl Oscillator {
             )));
         }
         let combination = subject.rotating.combination.as_ref();
-        let counted = subject.rotating.free.is_some() && question.sweep.is_none();
+        let counted = subject.rotating.free.is_some() && question.second.is_none();
         remarks.extend(subject.free_phases(&value, counted));
         remarks.extend(subject.enclosed());
         remarks.extend(missing(&value));
@@ -211,10 +211,21 @@ impl Subject<'_> {
             };
             list.push(self.shown_change(change).ok_or(Error::NoValue)?);
         }
+        let mut turning = Vec::new();
         for (sample, found) in &found.searches {
-            let system = self.rotating.flow.system(&self.values([Some(sample), None]));
+            let values = self.values([Some(sample), None]);
+            let system = self.rotating.flow.system(&values);
             let states = self.shown_states(Some(sample), &system, found);
-            response.states.push(states.ok_or(Error::NoValue)?);
+            let mut states = states.ok_or(Error::NoValue)?;
+            if let Some(free) = &self.rotating.free {
+                self.with_free_phase(free, reach, &values, &mut states)?;
+                turning.push((Value::from(sample), states.turning()));
+            }
+            response.states.push(states);
+        }
+        if let Some(free) = &self.rotating.free {
+            self.follow_turning(free, &turning, &course, &mut response)?;
+            response.no_closed_missing = Some(false);
         }
         response.backbone = self.backbone(&values, &course);
         Ok(response)

@@ -1,7 +1,7 @@
 //! The slow flow of a question with its values, and what is shown of its states.
 
 use super::answer::{Estimate, Response};
-use super::frequency::{forcing_frequency, moving_frequency};
+use super::frequency::{Varying, forcing_frequency, moving_frequency, resonant};
 use super::{ORDER, Respond, SEARCHES, STEPS, not_determined};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
@@ -108,8 +108,7 @@ impl<'a> Subject<'a> {
         let name = |axis: &Option<Axis>| axis.as_ref().map(|axis| axis.name.clone());
         let mut swept = [name(&question.sweep), name(&question.second)];
         let case = with_values(oscillator, &swept);
-        let asked = |case: &Oscillator| whole(case.flow(order, work)?.value, order);
-        let mut slow = asked(&case);
+        let mut slow = resonant(&case, order, work).and_then(|slow| whole(slow, order));
         let mut factor = None;
         if let Some(axis) = &question.sweep
             && axis.name != small
@@ -117,10 +116,10 @@ impl<'a> Subject<'a> {
         {
             let name = &axis.name;
             // A frequency: its detuning varies in its place.
-            if let Some((value, ratio, symbol)) = forcing_frequency(&case, axis, work)? {
-                factor = Some(ratio);
-                swept[0] = Some(symbol);
-                slow = asked(&case.clone().with(name, value));
+            if let Some(found) = forcing_frequency(&case, axis, order, work)? {
+                let Varying { slow: own, factor: ratio, symbol } = found;
+                (factor, swept[0]) = (Some(ratio), Some(symbol));
+                slow = whole(own, order);
             } else if slow.as_ref().is_ok_and(|slow| is_unit(slow, name)) {
                 return Err(moving_frequency(name));
             } else if let Ok(slow) = &slow {
@@ -620,7 +619,9 @@ fn at_root(square: &str) -> String {
 }
 
 fn no_resonance(name: &str) -> Error {
-    let message = format!("no value of {name} lies within a tenth of a resonance");
+    let message = format!(
+        "no value of {name} lies around a resonance that couples the force to an amplitude"
+    );
     let hint = "a range about a resonance, or the detuning as a parameter of its own";
     Refused::no_answer("no-response", message, hint).into()
 }

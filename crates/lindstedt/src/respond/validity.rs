@@ -77,7 +77,17 @@ impl Subject<'_> {
                 self.slow.size(&near.size),
             ))
         });
-        orders.into_iter().chain(missed).chain(tongues(value)).collect()
+        // Beyond a tenth `derive` does not detune by itself.
+        let beside = self.slow.system.beside.as_ref().filter(|_| self.factor.is_none());
+        let (force, tenth) = (self.slow.system.force(), Rational::from((1, 10)));
+        let away = beside.map(|it| (&it.rate, Rational::from(&it.rate - &force)));
+        let away = away.filter(|(rate, away)| away.clone().abs() > tenth * *rate);
+        let detuned = away.map(|(rate, away)| {
+            Remark(format!(
+                "the frequency of the force, {rate}, counts as that of the resonance, {force}, with a detuning of {away}"
+            ))
+        });
+        orders.into_iter().chain(missed).chain(detuned).chain(tongues(value)).collect()
     }
 }
 
