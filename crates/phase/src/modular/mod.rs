@@ -400,9 +400,10 @@ fn of_symmetry<'a>(
 
 /// How many parts lack their coefficients, and how many their values.
 fn lacking<'a>(parts: impl Iterator<Item = &'a Part> + Clone) -> [usize; 2] {
-    let forms: [fn(&Forms) -> &OnceLock<Vec<Residues>>; 2] =
-        [|forms| &forms.coefficients, |forms| &forms.values];
-    forms.map(|form| parts.clone().filter(|part| form(&part.forms).get().is_none()).count())
+    let no = |form: fn(&Forms) -> &OnceLock<Vec<Residues>>| {
+        parts.clone().filter(|part| form(&part.forms).get().is_none()).count()
+    };
+    [no(|forms| &forms.coefficients), no(|forms| &forms.values)]
 }
 
 fn add_lists(field: &PrimeFields, a: &mut [Residues], b: &[Residues]) {
@@ -644,5 +645,35 @@ mod tests {
         // `as_rational` does not apply to a finite field; the other laws do.
         assert_eq!(laws::ring(&a, &samples), Ok(()));
         assert_eq!(laws::derivation_and_solution(&a, &samples), Ok(()));
+    }
+
+    /// Coefficients that are not those of the values, of one function among some, in one place modulo one prime.
+    #[test]
+    fn forms_that_differ_are_found() {
+        let (points, modulus) = Modular::points_for_first_harmonic(24);
+        let field = PrimeFields::with_roots_of_unity(modulus).next().expect("primes");
+        let a = Modular::new(field, points).expect("an algebra");
+        let n = |k: i64| a.field.integer(&Integer::from(k));
+        let mut f: Vec<ModularElement> = (1..6)
+            .map(|k| a.from_harmonics([vec![n(k), n(0), n(3)], vec![n(0), n(2), n(1), n(7)]]))
+            .collect();
+        let powers = vec![(0..5).map(|k| a.field.power(&n(987_654_321), k)).collect()];
+        for part in f.iter().flat_map(|f| &f.parts).flatten() {
+            part.values();
+        }
+        assert!(a.forms_agree(&f, &powers));
+        for symmetry in SYMMETRIES {
+            let right = f[2].clone();
+            if let Some(part) = &right.parts[symmetry.index()] {
+                let mut values = part.values().to_vec();
+                values[points / 2][5] ^= 1;
+                let coefficients = part.coefficients().to_vec();
+                f[2].parts[symmetry.index()] = part.with_forms(Some(coefficients), Some(values));
+                assert!(!a.forms_agree(&f, &powers), "{symmetry:?}");
+            }
+            f[2] = right;
+        }
+        // There are no odd cosines.
+        assert_eq!(f[2].parts.iter().flatten().count(), 3);
     }
 }
