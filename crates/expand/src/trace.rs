@@ -19,8 +19,6 @@ type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 /// An expansion and the nodes of its equation.
 #[derive(Clone, Debug)]
 pub struct Trace<A: PhaseAlgebra> {
-    /// kappa.
-    pub stiffness: Constant<A>,
     /// x_n; that of the last order of a limit cycle without its amplitude.
     pub solution: Vec<A::Element>,
     /// W_n.
@@ -56,7 +54,6 @@ pub fn trace<A: PhaseAlgebra>(
         nodes.push(coefficients.collect::<Result<Vec<_>, _>>()?);
     }
     Ok(Trace {
-        stiffness: driver.stiffness,
         solution: driver.x,
         squared: driver.frequency_squared,
         frequency: driver.frequency,

@@ -227,7 +227,8 @@ mod tests {
     use crate::tests::{NoNames, equations, van_der_pol, with_images};
     use lindstedt_algebra::Ring;
     use lindstedt_expand::{Equation, Request, Trace, trace};
-    use lindstedt_phase::modular::ModularElement;
+    use lindstedt_phase::modular::{ModularElement, Residues};
+    use lindstedt_series::Series;
 
     /// Another bound and another proof give the numbers of the whole expansion, for every form of equation.
     #[test]
@@ -318,6 +319,14 @@ mod tests {
                 let mut broken = trace.clone();
                 field.add_assign(&mut broken.squared[n], &one_lane(n));
                 refuses(&broken, &format!("W_{n}"));
+                // A residual is left even where omega and W belong together.
+                if n > 0 {
+                    broken.frequency = square_root(field, &broken.squared);
+                    refuses(&broken, &format!("omega^2 = W_{n}"));
+                }
+                let mut broken = trace.clone();
+                field.add_assign(&mut broken.frequency[n], &one_lane(n));
+                refuses(&broken, &format!("omega_{n}"));
                 for (k, odd) in [(1, 0), (1, 1), (2, 0), (3, 1), (5, 0)] {
                     let mut broken = trace.clone();
                     broken.solution[n] = shifted(&broken.solution[n], k, odd);
@@ -368,6 +377,10 @@ mod tests {
                 assert!(job.check_trace(algebra, equation, trace, degrees).is_err());
             });
         }
+    }
+
+    fn square_root(field: &PrimeFields, squared: &[Residues]) -> Vec<Residues> {
+        Series::truncated(squared.to_vec()).square_root(field).unwrap().coefficients
     }
 
     fn trace_of(

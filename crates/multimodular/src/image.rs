@@ -153,6 +153,7 @@ impl Job<'_> {
         };
         self.check_trace(&algebra, &equation, &trace, degrees)?;
         let series = self.series(&field, trace.squared)?;
+        self.check_series(&field, series.each_ref())?;
         let lists = (0..=self.request.order).map(|n| series.each_ref().map(|list| list[n]));
         let places = vec![SERIES.to_vec(); self.request.order + 1];
         Ok(Ok(parted(&field, places, lists)))
@@ -176,9 +177,13 @@ impl Job<'_> {
         degrees: &[Degrees],
     ) -> Result<(), Error> {
         let (field, order) = (algebra.field(), self.request.order);
+        let stiffness = field.rational(&self.stiffness);
         let broken = Error::from(ExpandError::Residual { order });
         if !trace.is_normalised(algebra, &self.request) {
             return Err(ExpandError::Normalisation { order }.into());
+        }
+        if !is_product(field, [&trace.frequency, &trace.frequency], &trace.squared) {
+            return Err(broken);
         }
         let degree = |of: &Degrees| of.iter().flatten().max().copied().unwrap_or(0);
         let right = |harmonic: usize| {
@@ -206,7 +211,7 @@ impl Job<'_> {
             let sums = partial_sums(field, &trace.squared, powers);
             let curvature = |l: usize, k: usize| {
                 let last = right[k]?.checked_sub(l)?;
-                let square = field.mul(&trace.stiffness, &field.rational(&Rational::from(k * k)));
+                let square = field.mul(&stiffness, &field.rational(&Rational::from(k * k)));
                 Some(field.neg(&field.mul(&square, &field.mul(&powers[l], &sums[last]))))
             };
             let force = |n: usize, k: usize| (n <= right[k]?).then(|| powers[n]);
@@ -218,6 +223,20 @@ impl Job<'_> {
             }
         }
         Ok(())
+    }
+
+    /// omega^2 = W and omega T = 1.
+    fn check_series(
+        &self,
+        field: &PrimeFields,
+        [squared, frequency, period]: [&Vec<Residues>; 3],
+    ) -> Result<(), Error> {
+        let mut one = vec![field.zero(); period.len()];
+        one[0] = field.one();
+        let holds = is_product(field, [frequency, frequency], squared)
+            && is_product(field, [frequency, period], &one);
+        let broken = ExpandError::Residual { order: self.request.order };
+        if holds { Ok(()) } else { Err(broken.into()) }
     }
 
     /// W, omega with omega^2 = W, and T with omega T = 1.
@@ -298,17 +317,7 @@ impl Job<'_> {
             }
             solution.push(algebra.from_harmonics(harmonics));
         }
-        let [frequency, period] = [frequency, period].map(Series::truncated);
-        let mut one = vec![field.zero(); period.coefficients.len()];
-        one[0] = field.one();
-        let order = self.request.order;
-        let square = frequency.mul(field, &frequency.clone(), order).coefficients;
-        let product = frequency.mul(field, &period, order).coefficients;
-        for (found, expected) in [(&square, &squared), (&product, &one)] {
-            if let Some(order) = found.iter().zip(expected).position(|(a, b)| a != b) {
-                return Err(ExpandError::Residual { order }.into());
-            }
-        }
+        self.check_series(field, [&squared, &frequency, &period])?;
         let amplitude = field.rational(&self.request.leading_amplitude);
         Ok(Expansion {
             condition: self.request.condition,
@@ -343,6 +352,12 @@ impl Job<'_> {
         let all = agrees && numerators.next().is_none();
         if all { Ok(()) } else { Err(ExpandError::Residual { order: n }.into()) }
     }
+}
+
+/// Whether a series is the product of two, as far as it goes.
+fn is_product(field: &PrimeFields, factors: [&Vec<Residues>; 2], product: &Vec<Residues>) -> bool {
+    let [a, b] = factors.map(|factor| Series::truncated(factor.clone()));
+    a.mul(field, &b, product.len().saturating_sub(1)).coefficients == *product
 }
 
 /// Images from numbers modulo eight primes, order by order.
