@@ -1006,6 +1006,17 @@ fn two_self_excited_unknowns_lock() {
     assert_eq!(found.branches.iter().filter(|branch| branch.closed).count(), 1);
 }
 
+/// Where the second unknown nearly moves alone at twice the frequency, w_2 > 0 leaves w_1 its sign: w_1 and -w_1 are one motion, half a period
+/// apart. Before a mode is born of the other one there are four, beyond three.
+#[test]
+fn motions_half_a_period_apart_are_one() {
+    let spring = "x'' + x + eps*(x*y + x^3); y'' + 4*y + eps*(x^2/2 + y)";
+    for (amplitude, count) in [("99/100", 4), ("101/100", 3)] {
+        let states = ask(spring, &[("eps", "1/10"), ("amplitude", amplitude)], &to_order(2));
+        assert_eq!((states.states[0].count, states.states[0].count_proved), (count, true));
+    }
+}
+
 /// The potential of Henon and Heiles has eight normal modes at low energy (Churchill, Pecelli and Rod 1979): to order two those
 /// in a plane are a circle, from order four on three pass through the saddles' directions and three do not, and two turn.
 #[test]
