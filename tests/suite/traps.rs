@@ -27,7 +27,8 @@ fn every_trap_is_refused_by_its_own_name() {
             "the linear part is not diagonalisable",
         ),
         (
-            "x'' + 2*x - y + eps*x^3 = 0; y'' + 5*y - x = 0",
+            // Twice the same irrational squares.
+            "x'' + 2*x - y + eps*x^3; y'' + 5*y - x; u'' + 2*u - v; v'' + 5*v - u",
             &[NORMAL_MODE],
             "no-rational-modes",
             "strongly coupled modes without rational form",

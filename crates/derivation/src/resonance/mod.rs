@@ -284,7 +284,8 @@ pub fn slow_flow_undetuned(
 /// let problem = ProblemFile::parse(text)?.problem;
 /// let settings = AveragingSettings::default();
 /// let found = slow_flow_from(&problem, &settings, &1.into(), &mut |_| true)?;
-/// assert_eq!((found.system.force(), found.system.resonances_around().len()), (1.into(), 1));
+/// assert_eq!(found.system.force(), 1);
+/// assert_eq!(found.system.resonances_around()[0], 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn slow_flow_from(

@@ -1,13 +1,11 @@
 //! Sums and products.
 
-use super::sums::{FEW, MANY, Numbering, SPARSE, Sum, independent};
+use super::sums::{FEW, MANY, Numbering, SPARSE, Sum, Terms, independent};
 use super::words::{DIGITS, Word};
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
 use rug::{Integer, Rational};
 use std::sync::atomic::Ordering::Relaxed;
-
-pub(super) type Terms<E> = Vec<Term<E>>;
 
 pub(super) type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
 

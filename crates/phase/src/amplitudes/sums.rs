@@ -7,8 +7,9 @@
 //! words have one number is noticed, and then they are hashed.
 
 use super::Term;
-use super::ring::Terms;
 use super::words::{DIGITS, Layout, Word};
+
+pub(super) type Terms<E> = Vec<Term<E>>;
 
 /// Sums of products: a list, and where words stand in it.
 pub(super) struct Sum<E> {
