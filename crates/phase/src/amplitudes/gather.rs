@@ -1,7 +1,8 @@
 //! Sums of products over scalars without denominators: the products that a coefficient is made of are gathered first, so
 //! that the scalars sum them at once.
 
-use super::ring::{Pair, Terms};
+use super::ring::Pair;
+use super::sums::Terms;
 use super::words::Word;
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::Ring;

@@ -4,13 +4,15 @@
 //! 64 bits, twelve products between two folds, and reduced once; long loops are written for the vectors that there are,
 //! and the processor decides (`words`).
 
+mod shared;
+
 use super::pair::PrimePair;
 use super::primes;
-use super::shared::{Shared, SumsOfProducts};
 pub use super::words::{LANES, Residues};
 use super::words::{Plain, Words, padded};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::{Integer, Rational};
+use shared::{Shared, SumsOfProducts};
 
 /// Sums not yet reduced.
 type Sums = [u64; LANES];

@@ -14,7 +14,6 @@
 mod fields;
 mod pair;
 mod primes;
-mod shared;
 mod transform;
 mod words;
 

@@ -1,8 +1,9 @@
 //! Sums of products whose rows are shared: some places of all rows are laid side by side, so that each comes from memory
 //! once for all sums.
 
-use super::fields::{Factor, Kernel, Moduli, PrimeFields};
-use super::words::{Residues, Words};
+use super::super::LANES;
+use super::super::words::{Residues, Words};
+use super::{Factor, Kernel, Moduli, PrimeFields};
 use rustc_hash::FxHashMap;
 
 /// Places of one row, from the start of a line of the cache.
@@ -72,7 +73,7 @@ impl<'a, B: Shared<'a>> SumsOfProducts<'a, B> {
             pairs.iter().map(|(a, b)| (number_of(a), b.packed(&mut number_of))).collect()
         };
         let sums = lists.iter().map(&mut sum).collect();
-        let longest = |pairs: &Vec<(&[Residues], B)>| super::fields::longest(pairs);
+        let longest = |pairs: &Vec<(&[Residues], B)>| super::longest(pairs);
         Self { fields, rows, sums, lengths: lists.iter().map(longest).collect() }
     }
 }
@@ -84,14 +85,14 @@ impl<'a, B: Shared<'a>> Kernel for SumsOfProducts<'a, B> {
     fn run<W: Words>(self, words: W) -> Vec<Vec<Residues>> {
         let moduli = Moduli::new(words, self.fields);
         let mut lists: Vec<Vec<Residues>> =
-            self.lengths.iter().map(|length| vec![[0; super::LANES]; *length]).collect();
+            self.lengths.iter().map(|length| vec![[0; LANES]; *length]).collect();
         let length = self.lengths.iter().max().copied().unwrap_or(0);
-        let mut tiles = vec![Tile([[0; super::LANES]; TILE]); TILES * self.rows.len()];
+        let mut tiles = vec![Tile([[0; LANES]; TILE]); TILES * self.rows.len()];
         for start in (0..length).step_by(TILES * TILE) {
             for (row, row_number) in self.rows.iter().zip(0..) {
                 for tile in 0..TILES {
                     let place = &mut tiles[tile * self.rows.len() + row_number].0;
-                    *place = [[0; super::LANES]; TILE];
+                    *place = [[0; LANES]; TILE];
                     let rest = row.get(start + tile * TILE..).unwrap_or(&[]);
                     place.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
                 }
