@@ -9,14 +9,14 @@ use rustc_hash::FxHashMap;
 /// Places of one row, from the start of a line of the cache.
 #[derive(Clone)]
 #[repr(align(64))]
-pub(super) struct Tile([Residues; TILE]);
+pub(in crate::modular) struct Tile([Residues; TILE]);
 
 const TILE: usize = 4;
 /// Tiles that are laid side by side at a time: two thousand rows of so many stay near the processor.
 const TILES: usize = 4;
 
 /// A factor that is a row, or one number.
-pub(super) trait Shared<'a>: Factor {
+pub(in crate::modular) trait Shared<'a>: Factor {
     /// The number of the row, or the number itself.
     type Packed: Copy;
     fn packed(self, number_of: &mut impl FnMut(&'a [Residues]) -> u32) -> Self::Packed;
