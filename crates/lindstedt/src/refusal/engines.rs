@@ -129,6 +129,18 @@ fn of_sought(error: &ResonanceError) -> Option<(Kind, &'static str, &'static str
     })
 }
 
+/// Of one normal mode.
+fn of_mode(error: &ResonanceError) -> Option<(Kind, &'static str, &'static str)> {
+    Some(match error {
+        ResonanceError::ForcedMode => (NoAnswer, "no-method", ""),
+        ResonanceError::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
+        ResonanceError::InternalResonance { .. } => {
+            (NoAnswer, "internal-resonance", "the slow flow has all modes (`derive`)")
+        }
+        _ => return None,
+    })
+}
+
 impl Refusal for ResonanceError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {
@@ -154,11 +166,6 @@ impl Refusal for ResonanceError {
             Self::Unset { .. } => (Usage, "no-value-set", FREQUENCY),
             Self::IrrationalRate { .. } => (NoAnswer, "ratio-not-rational", FRACTION),
             Self::NoRatio { .. } => (Usage, "ratio-not-known", UNKNOWN_RATIO),
-            Self::ForcedMode => (NoAnswer, "no-method", ""),
-            Self::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
-            Self::InternalResonance { .. } => {
-                (NoAnswer, "internal-resonance", "the slow flow has all modes (`derive`)")
-            }
             Self::NoRationalForm => (
                 NoAnswer,
                 "no-rational-modes",
@@ -190,7 +197,9 @@ impl Refusal for ResonanceError {
             Self::TooHigh { .. } | Self::TooManyTerms { .. } => {
                 (Undecided, "too-large", "lower --order")
             }
-            error => of_sought(error).unwrap_or((Undecided, "undecided", "")),
+            error => {
+                of_sought(error).or_else(|| of_mode(error)).unwrap_or((Undecided, "undecided", ""))
+            }
         };
         (kind, code, hint.to_owned())
     }

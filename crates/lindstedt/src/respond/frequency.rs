@@ -105,7 +105,7 @@ pub(super) fn forcing_frequency(
     }
     let Some(first) = found.first() else { return Ok(None) };
     let (factor, rate) = (first.factor(), first.slow.system.force());
-    let shifted = Rational::from(&first.value * Rational::from((1001, 1000)));
+    let shifted = &first.value * Rational::from((1001, 1000));
     let next = at(&shifted).flow_from(Some(&rate), 1, work)?.value;
     if Beside::new(next, &shifted).and_then(|next| next.factor()) != factor {
         return Err(moving_frequency(&axis.name));
