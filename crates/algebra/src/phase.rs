@@ -26,7 +26,7 @@ pub trait FunctionAlgebra: RationalAlgebra {
         }
         sum
     }
-    /// The linear combination of every list; see [`Ring::SUMS_AT_ONCE`].
+    /// The linear combination of every list; see `Ring::SUMS_AT_ONCE`.
     fn linear_combinations(
         &self,
         lists: &[Vec<(&Self::Element, &Constant<Self>)>],
