@@ -272,7 +272,7 @@ def test_options_that_do_not_go_together_are_refused(
     case = duffing if verb in ("derive", "average") else duffing.set(eps="1/10")
     ask = getattr(case, verb)
     assert ask(**options)
-    with pytest.raises(lindstedt.UsageError, match="beside the others|at a time|none of|no tier"):
+    with pytest.raises(lindstedt.UsageError, match="beside the others|at a time|none of|is no flag"):
         ask(**options, **together)
 
 
