@@ -21,6 +21,8 @@ const DIVIDE: (i32, i32) = (137, 100);
 const MOST_BOXES: usize = 200_000;
 /// Zeros this near to one another, in parts of the largest |w_j|, are the phases that a gauge leaves to one motion.
 const SAME: f64 = 1e-9;
+/// Folds this near to a crossing, in parts of the reach and in its square of the range, are the crossing's own unless proved.
+const PITCHFORK: f64 = 0.03;
 /// Points of two branches this near are one, in parts of the reach.
 const NEAR: f64 = 1e-4;
 
@@ -159,6 +161,13 @@ impl Subject<'_> {
         }
         let course = self.course(&samples, axis, reach)?;
         self.follow_turning(free, &found, &course, &mut response)?;
+        if free.energy.is_none() {
+            let Turning { branch, changes, .. } = free.rest(&self.values([None, None]), &course);
+            let index = response.branches.len();
+            response.branches.push(self.shown_branch(&branch));
+            let born = changes.into_iter().map(|it| Located { branch: index, ..it });
+            response.hopf.extend(born.filter_map(|it| self.shown_change(&it)));
+        }
         Ok(response)
     }
 
@@ -176,21 +185,31 @@ impl Subject<'_> {
         let mut known: Vec<&Located> = Vec::new();
         let branches = free.branches(&values, found, &course);
         let before = response.branches.len();
+        let changes = branches.iter().flat_map(|it| &it.changes);
+        let crossings: Vec<_> =
+            changes.filter(|it| it.change == steady::Change::Crossing).collect();
+        // A branch born of another one turns where they cross, and the equations of a fold are singular there.
+        let wide = course.range[1] - course.range[0];
+        let turns = |fold: &Located, other: &Located| {
+            let near = fold.at.iter().zip(&other.at[..4]);
+            fold.change == steady::Change::Fold
+                && fold.proved.is_none()
+                && near.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) < PITCHFORK * course.reach
+                && (fold.at[4] - other.at[4]).abs() < PITCHFORK.powi(2) * wide
+        };
         for Turning { branch, rates, changes } in &branches {
             let mut shown = self.shown_branch(branch);
             for (point, delta) in shown.points.iter_mut().zip(rates) {
                 point.frequency = self.frequency(*delta, self.rate(Some(point.value.value)));
             }
             response.branches.push(shown);
-            // Where they meet rest the other half of the branch begins, which is the same motions.
-            let at_rest = |it: &&Located| it.at[..4].iter().all(|x| x.abs() < NEAR * course.reach);
-            for found in changes.iter().filter(|it| !at_rest(it)) {
+            for found in changes.iter().filter(|it| !crossings.iter().any(|other| turns(it, other)))
+            {
                 // Each of two branches knows their crossing.
                 let near = |it: &&Located| {
                     let same = it.change == found.change
                         && free.same(&it.at, &found.at, NEAR * course.reach);
-                    same && (it.at[4] - found.at[4]).abs()
-                        < NEAR * (course.range[1] - course.range[0])
+                    same && (it.at[4] - found.at[4]).abs() < NEAR * wide
                 };
                 if known.iter().any(near) {
                     continue;

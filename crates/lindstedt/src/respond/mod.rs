@@ -128,6 +128,7 @@ impl Oscillator {
         self.second_order()?;
         self.check_frequencies()?;
         let subject = Subject::new(self, question, work)?;
+        subject.refuse_amplitude()?;
         let unforced = subject.rotating.unforced();
         let mut value = match (unforced, &question.sweep, &question.second) {
             (Some(free), ..) => subject.unforced(free, question)?,

@@ -223,6 +223,30 @@ impl<'a> Subject<'a> {
         )))
     }
 
+    /// Refuses an amplitude that is set where motions form no family, or that is a parameter of the equations as well.
+    pub(super) fn refuse_amplitude(&self) -> Result<(), Error> {
+        let problem = self.oscillator.problem();
+        if problem.others.is_empty() || !self.oscillator.given().contains_key(FAMILY) {
+            return Ok(());
+        }
+        let own =
+            problem.equations().any(|it| it.parameters().iter().any(|name| **name == *FAMILY));
+        let (code, message, hint) = match (self.is_family(), own) {
+            (true, true) => (
+                "symbol-taken",
+                "`amplitude` is a parameter of the equations and that of the family of normal modes",
+                "another name in the equations",
+            ),
+            (false, false) => (
+                "parameter",
+                "no conserved energy is known by which motions form families over their amplitude",
+                "without --set amplitude",
+            ),
+            _ => return Ok(()),
+        };
+        Err(Refused::usage(code, message, hint).into())
+    }
+
     /// Whether motions are families of one parameter.
     pub(super) fn is_family(&self) -> bool {
         self.rotating.unforced().is_some_and(|free| free.energy.is_some())

@@ -51,6 +51,8 @@ pub struct Turning {
     pub changes: Vec<Located>,
 }
 
+/// Motions with so small a part of the largest amplitude of a branch are not told from rest.
+const NEAR_REST: f64 = 2e-3;
 /// An amplitude that is zero, in parts of the reach.
 const SMALL: f64 = 1e-6;
 
@@ -258,6 +260,56 @@ impl FreePhase {
         Flow::of_rows(rows, self.parameters.clone())
     }
 
+    /// Rest over the parameter, and the values at which exponents of it cross the imaginary axis, by bisection: motions are born
+    /// of rest there. Two crossings within a 400th of the range that undo each other are not seen.
+    #[must_use]
+    pub fn rest(&self, values: &[Option<Value>], course: &Course) -> Turning {
+        const CELLS: u32 = 400;
+        let names: Vec<&str> = self.parameters.iter().map(String::as_str).collect();
+        let flow = Flow::of_complex(&self.equations, &names).system(values);
+        let [low, high] = course.range;
+        let point = |s: f64| {
+            let at = vec![0.0, 0.0, 0.0, 0.0, s];
+            let (_, slopes) = flow.derivatives(&at);
+            let rows: Vec<f64> =
+                slopes.chunks_exact(5).flat_map(|row| &row[..4]).copied().collect();
+            Point { at, exponents: eigenvalues(4, &rows), change: None }
+        };
+        let points: Vec<Point> = (0..=CELLS)
+            .map(|k| point(low + (high - low) * f64::from(k) / f64::from(CELLS)))
+            .collect();
+        // The real parts from the largest on, and how many are positive: near a double exponent rounding moves them by more than
+        // its unit.
+        let growth = |point: &Point| {
+            let mut parts: Vec<f64> = point.exponents.iter().map(|x| x.re).collect();
+            parts.sort_by(|a, b| b.total_cmp(a));
+            let zero = 1e-11 * point.exponents.iter().fold(0.0f64, |m, x| m.max(x.norm()));
+            let count = parts.iter().filter(|x| **x > zero).count();
+            (parts, count)
+        };
+        let mut changes = Vec::new();
+        let mut cells: Vec<_> = points.windows(2).map(|two| [two[0].at[4], two[1].at[4]]).collect();
+        while let Some([a, b]) = cells.pop() {
+            let [(own, from), (other, to)] = [a, b].map(|s| growth(&point(s)));
+            if from == to {
+                continue;
+            }
+            let (x, y) = (own[from.min(to)], other[from.min(to)]);
+            let (middle, width) = (0.5 * (a + b), b - a);
+            // A real part that passes zero does so on a line; one that comes from a double exponent, like a root.
+            let line = width < 1e-7 * (high - low) && x * y < 0.0;
+            let at = if line { a - x * width / (y - x) } else { middle };
+            if line || width < 1e-14 * (high - low) || [a, b].contains(&middle) {
+                let at = vec![0.0, 0.0, 0.0, 0.0, at];
+                changes.push(Located { change: Change::Hopf, branch: 0, at, proved: None });
+            } else {
+                cells.extend([[a, middle], [middle, b]]);
+            }
+        }
+        let rates = vec![0.0; points.len()];
+        Turning { branch: Branch { points, closed: false, complete: true }, rates, changes }
+    }
+
     /// The branches over the parameter without a value, [`Course::parameter`] counted among the parameters, that pass motions
     /// at values of it.
     #[must_use]
@@ -334,6 +386,7 @@ impl FreePhase {
             let unknowns = if self.energy.is_some() { 0 } else { 4 };
             let course = Course { parameter: n, unknowns, ..course.clone() };
             let Some(branch) = follow(&own.system(values), &start, &course) else { continue };
+            let branch = beside_rest(branch, c, &start);
             let size = |point: &Point| point.at[2 * c].abs();
             let least = branch.points.iter().map(size).fold(f64::INFINITY, f64::min);
             if best.as_ref().is_none_or(|(other, _)| least > *other) {
@@ -385,6 +438,51 @@ impl FreePhase {
         }
         Turning { branch, rates, changes }
     }
+}
+
+/// A branch followed through rest goes on as the same motions, -w in the place of w, so that rest looks like a fold; and at rest
+/// every delta solves the equations, so that the curve is lost. The part of it, from rest to rest, that has a point.
+fn beside_rest(branch: Branch, c: usize, start: &[f64]) -> Branch {
+    let size = |point: &Point| point.at[..4].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let most = branch.points.iter().map(size).fold(0.0, f64::max);
+    let is_rest = |point: &Point| size(point) < NEAR_REST * most;
+    // All of w vanishes between two points on the line through them, nearly.
+    let passes = |a: &Point, b: &Point| {
+        let part = a.at[2 * c] / (a.at[2 * c] - b.at[2 * c]);
+        let there = (0..4).map(|i| (a.at[i] + part * (b.at[i] - a.at[i])).abs());
+        (0.0..1.0).contains(&part) && there.fold(0.0, f64::max) < 0.1 * size(a).max(size(b))
+    };
+    let cut = |a: &Point, b: &Point| is_rest(a) || is_rest(b) || passes(a, b);
+    let Branch { mut points, mut closed, complete } = branch;
+    let mut cuts = points.windows(2);
+    if let Some(first) = cuts.position(|two| cut(&two[0], &two[1])).filter(|_| closed) {
+        points.pop();
+        points.rotate_left(first + 1);
+        closed = false;
+    }
+    let mut parts: Vec<Vec<Point>> = vec![Vec::new()];
+    for mut point in points {
+        let part =
+            parts.last_mut().filter(|part| part.last().is_none_or(|last| !cut(last, &point)));
+        match part {
+            Some(part) => part.push(point),
+            None => {
+                // The turn of the parameter at rest is no fold.
+                point.change = None;
+                parts
+                    .last_mut()
+                    .and_then(|part| part.last_mut())
+                    .into_iter()
+                    .for_each(|it| it.change = None);
+                parts.push(vec![point]);
+            }
+        }
+    }
+    let away =
+        |point: &Point| point.at.iter().zip(start).map(|(x, y)| (x - y).powi(2)).sum::<f64>();
+    let nearest = |part: &Vec<Point>| part.iter().map(away).fold(f64::INFINITY, f64::min);
+    let points = parts.into_iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+    Branch { points: points.unwrap_or_default(), closed, complete }
 }
 
 /// w and the parameter, of w, delta (beta), the parameter.

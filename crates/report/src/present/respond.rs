@@ -118,8 +118,12 @@ fn sweep(value: &Response, name: &str, absence: bool) -> Document {
     let searches = value.states.iter().map(|states| {
         let value = states.value.as_ref();
         let at = value.and_then(|value| value.exact.clone()).unwrap_or_default();
-        let stable = states.list.iter().filter(|state| state.stable == Some(true)).count();
-        [at, proof(states), stable.to_string()]
+        let count = |known| states.list.iter().filter(|state| state.stable == known).count();
+        let neutral = match count(None) {
+            0 => String::new(),
+            n => format!(", neutral or undecided {n}"),
+        };
+        [at, proof(states), format!("{}{neutral}", count(Some(true)))]
     });
     let head: [Text; 3] = [formula(), "steady states".into(), "of them stable".into()];
     let page = Document::default().table(searches.fold(Table::new(head), Table::row));
