@@ -1,7 +1,7 @@
 //! Folds, Hopf points, cusps and Bogdanov-Takens points near a guess, proved: zeros of the polynomial systems of
 //! [`Flow::conditions`].
 
-use super::branch::Branch;
+use super::branch::{Branch, Point};
 use super::flow::{Change, Flow};
 use super::krawczyk::{Zero, zero_near};
 use super::value::Value;
@@ -116,7 +116,12 @@ impl Flow {
             }
         };
         // In the plane of the parameters the curve runs back where it came from; a piece over the cusp itself hardly moves there.
-        let points = &folds.points;
+        // Where a change has a point of its own beside another one there is no direction between them.
+        let mut points: Vec<&Point> = folds.points.iter().collect();
+        points.dedup_by(|a, b| {
+            let size = a.at.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            a.at.iter().zip(&b.at).all(|(x, y)| (x - y).abs() <= 1e-9 * size)
+        });
         let extent = [n, n + 1].map(|k| {
             let values = points.iter().map(|point| point.at[k]);
             let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
@@ -149,7 +154,7 @@ impl Flow {
             let others = exponents.iter().filter(|x| x.norm() > zero);
             others.fold(Complex::new(1.0, 0.0), |product, x| product * x).re
         };
-        for two in folds.points.windows(2) {
+        for two in points.windows(2) {
             if second(&two[0].exponents) * second(&two[1].exponents) < 0.0 {
                 keep(Change::BogdanovTakens, &two[0].at);
             }

@@ -386,7 +386,7 @@ impl FreePhase {
             let unknowns = if self.energy.is_some() { 0 } else { 4 };
             let course = Course { parameter: n, unknowns, ..course.clone() };
             let Some(branch) = follow(&own.system(values), &start, &course) else { continue };
-            let branch = beside_rest(branch, c, &start);
+            let branch = beside_rest(branch, &start);
             let size = |point: &Point| point.at[2 * c].abs();
             let least = branch.points.iter().map(size).fold(f64::INFINITY, f64::min);
             if best.as_ref().is_none_or(|(other, _)| least > *other) {
@@ -442,17 +442,11 @@ impl FreePhase {
 
 /// A branch followed through rest goes on as the same motions, -w in the place of w, so that rest looks like a fold; and at rest
 /// every delta solves the equations, so that the curve is lost. The part of it, from rest to rest, that has a point.
-fn beside_rest(branch: Branch, c: usize, start: &[f64]) -> Branch {
+fn beside_rest(branch: Branch, start: &[f64]) -> Branch {
     let size = |point: &Point| point.at[..4].iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let most = branch.points.iter().map(size).fold(0.0, f64::max);
     let is_rest = |point: &Point| size(point) < NEAR_REST * most;
-    // All of w vanishes between two points on the line through them, nearly.
-    let passes = |a: &Point, b: &Point| {
-        let part = a.at[2 * c] / (a.at[2 * c] - b.at[2 * c]);
-        let there = (0..4).map(|i| (a.at[i] + part * (b.at[i] - a.at[i])).abs());
-        (0.0..1.0).contains(&part) && there.fold(0.0, f64::max) < 0.1 * size(a).max(size(b))
-    };
-    let cut = |a: &Point, b: &Point| is_rest(a) || is_rest(b) || passes(a, b);
+    let cut = |a: &Point, b: &Point| is_rest(a) || is_rest(b);
     let Branch { mut points, mut closed, complete } = branch;
     let mut cuts = points.windows(2);
     if let Some(first) = cuts.position(|two| cut(&two[0], &two[1])).filter(|_| closed) {
