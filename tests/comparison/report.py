@@ -39,4 +39,4 @@ def report(versions, series, coefficients, order, ours, seconds):
     if len(last) > 100:
         last = f"{last[:30]} ... {last[-30:]} ({len(last)} characters)"
     print(f"{series}, order {order}: {last}")
-    print(f"CPU seconds: {seconds:.2f}")
+    print(f"CPU seconds: {seconds:.4g}")
