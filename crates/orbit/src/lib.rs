@@ -37,6 +37,7 @@ mod bounds;
 mod centre;
 mod doubles;
 mod drift;
+mod eigenvalues;
 mod exact;
 mod failure;
 mod family;

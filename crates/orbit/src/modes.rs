@@ -1,6 +1,7 @@
 //! Guesses for several unknowns: normal modes continued in the amplitude, and motions that settle.
 
 use crate::doubles::InDoubles;
+use crate::eigenvalues::eigenvalues;
 use crate::newton::balance;
 use crate::task::Task;
 use crate::{Failure, Field, Kind, Start, guesses};
@@ -96,7 +97,7 @@ fn linear_modes(field: &Field) -> Vec<(f64, Vec<f64>)> {
         }
     }
     let mut modes = Vec::new();
-    for value in stiffness.complex_eigenvalues().iter() {
+    for value in eigenvalues(n, stiffness.transpose().as_slice()) {
         let square = value.re;
         if value.im.abs() > 1e-6 * square.abs() || square <= 0.0 {
             continue;

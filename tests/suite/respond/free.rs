@@ -164,6 +164,31 @@ fn a_pitchfork_of_modes_is_no_fold() {
     assert!((at[0] + 0.375).abs() < 1e-9 && (at[at.len() - 1] - 0.375).abs() < 1e-9, "{at:?}");
 }
 
+/// Motions proved in boxes that shrink little at first, with the amplitudes of another averaging and Newton's method in doubles;
+/// of the third the exponents of rest are those of a matrix with which the QR algorithm alone goes round for ever.
+#[test]
+fn motions_in_wide_boxes_have_their_digits() {
+    let damped =
+        "x'' + x + eps*(-3/4*x*y - x'/5 + x^2*x' + y'); y'' + y + eps*(y'/5 + y^2*y' - x/2)";
+    let springs = "x'' + x + eps*(6*x^3 - 4*x*y^2 + 3*x*y - 3*y/4); y'' + y + eps*(-4*x^2*y + 3*x^2/2 - 3*x/4 + 8*y^3)";
+    let rotating = "x'' + x + eps*(-(1 - x^2)*x' + y + y'/3); y'' + y + eps*((1/5 + y^2)*y' - x/2)";
+    let half = ("amplitude", "1/2");
+    for (equation, values, order, known) in [
+        (damped, &[("eps", "1/20")][..], 2, [1.650452, 1.135380]),
+        (springs, &[("eps", "1/20"), half][..], 2, [0.363218, 0.343617]),
+        (rotating, &[("eps", "1/10")][..], 1, [2.556326, 1.562108]),
+    ] {
+        let found = ask(equation, values, &to_order(order));
+        let states = &found.states[0];
+        assert!(states.count_proved && states.count == 2, "{equation}");
+        let near = |it: &&Vec<f64>| {
+            it.iter().zip(known).all(|(a, known): (&f64, f64)| (a - known).abs() < 1e-6)
+        };
+        let shown: Vec<_> = states.list.iter().map(|it| decimals(&it.amplitudes)).collect();
+        assert_eq!(shown.iter().filter(near).count(), 1, "{shown:?}");
+    }
+}
+
 /// The amplitude is that of families, or a parameter of the equations, and never both.
 #[test]
 fn an_amplitude_without_a_family_is_refused() {

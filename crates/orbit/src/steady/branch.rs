@@ -7,8 +7,9 @@
 
 use super::System;
 use super::flow::Change;
+use crate::eigenvalues::eigenvalues;
 use lindstedt_algebra::Stop;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
 /// Where a branch is followed.
 #[derive(Clone, Debug)]
@@ -70,20 +71,6 @@ pub struct Branch {
 pub fn state_at(system: &System, at: &[f64]) -> Point {
     let (_, slopes) = system.derivatives(at);
     Point { at: at.to_vec(), exponents: eigenvalues(at.len(), &slopes), change: None }
-}
-
-/// The eigenvalues of a row-major matrix.
-pub(super) fn eigenvalues(n: usize, rows: &[f64]) -> Vec<Complex<f64>> {
-    if let ([a, b, c, d], 2) = (rows, n) {
-        let (half, gap) = (0.5 * (a + d), 0.5 * (a - d));
-        let square = gap * gap + b * c;
-        let root = Complex::new(square, 0.0).sqrt();
-        return vec![root + half, -root + half];
-    }
-    if n == 0 || rows.iter().any(|x| !x.is_finite()) {
-        return Vec::new();
-    }
-    DMatrix::from_row_slice(n, n, rows).complex_eigenvalues().iter().copied().collect()
 }
 
 /// prod_(i<j) (lambda_i + lambda_j).

@@ -5,6 +5,7 @@ use super::branch::{Branch, Point};
 use super::flow::{Change, Flow};
 use super::krawczyk::{Zero, zero_near};
 use super::value::Value;
+use crate::eigenvalues::eigenvalues;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// The parts of a unit within which a point is looked for.
@@ -167,7 +168,7 @@ impl Flow {
 /// right angles.
 fn rotation(jacobian: &DMatrix<f64>) -> Option<(DVector<f64>, DVector<f64>, f64)> {
     let n = jacobian.nrows();
-    let exponents = jacobian.clone().complex_eigenvalues();
+    let exponents = eigenvalues(n, jacobian.transpose().as_slice());
     let turning = exponents.iter().filter(|x| x.im > 0.0);
     let rate = turning.min_by(|x, y| x.re.abs().total_cmp(&y.re.abs()))?.im;
     let matrix = DMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {

@@ -104,19 +104,40 @@ pub(crate) fn krawczyk(system: &System, region: &[Interval]) -> Verdict {
 }
 
 /// The enclosure of the only zero of a box made as small as doubles allow.
-fn refine(system: &System, mut region: Region) -> Region {
-    for _ in 0..20 {
+fn refine(system: &System, region: Region) -> Region {
+    let mut region = sharp(system, &region).unwrap_or(region);
+    for _ in 0..100 {
         let (Verdict::One(next) | Verdict::Within(next)) = krawczyk(system, &region) else {
             break;
         };
         let width = |region: &Region| region.iter().map(|x| x.width()).sum::<f64>();
-        let slow = width(&next) > 0.9 * width(&region);
+        let slow = width(&next) > 0.99 * width(&region);
         region = next;
         if slow {
             break;
         }
     }
     region
+}
+
+/// The only zero of a box on the smallest box around what Newton's method finds on which it is proved: a wide box shrinks little
+/// at first.
+fn sharp(system: &System, region: &[Interval]) -> Option<Region> {
+    let at = newton(system, &middle(region))?;
+    let around = |fraction: f64| -> Region {
+        let side = |(x, within): (&f64, &Interval)| {
+            let half = (within.width() * fraction).max(16.0 * f64::EPSILON * x.abs());
+            Interval::new(x - half, x + half)
+        };
+        at.iter().zip(region).map(side).collect()
+    };
+    let boxes = (0..24).rev().map(|k| around(0.25f64.powi(k)));
+    boxes.take_while(|part| meet(part, region).is_some()).find_map(|part| {
+        match krawczyk(system, &part) {
+            Verdict::One(enclosure) if is_in(&enclosure, region) => Some(enclosure),
+            _ => None,
+        }
+    })
 }
 
 /// The zero of a box where the operator maps it into itself.

@@ -16,12 +16,13 @@
 //!
 //!   g_o = (i (d_o/d_c) Im(g_c) + Re g_c) y.
 
-use super::branch::{eigenvalues, follow};
+use super::branch::follow;
 use super::krawczyk::newton;
 use super::survey::{Located, crossing, located};
 use super::{
     Branch, Change, ComplexTerm, Course, Flow, Point, Polynomial, System, Value, Zero, bound,
 };
+use crate::eigenvalues::eigenvalues;
 use nalgebra::Complex;
 use rug::Rational;
 use rug::ops::Pow;
