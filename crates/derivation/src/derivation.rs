@@ -44,8 +44,8 @@ const FEW_OF_ALL: usize = 1000;
 pub enum Solution {
     /// None: the frequency alone was derived.
     FrequencyOnly {
-        /// The number of primes that prove it; nothing by the energy integral.
-        primes: Option<usize>,
+        /// What it was lifted from; nothing by the energy integral.
+        images: Option<multimodular::CheckedImages>,
     },
     /// In the Lobachevsky ring, by the parts of its clock.
     Clock(Box<ClockSolution>),

@@ -152,7 +152,7 @@ impl Task<'_> {
         if !observer(Progress::Checking) || settings.stop.asked() {
             return Err(ExpandError::Interrupted { order: settings.order }.into());
         }
-        let solution = Solution::FrequencyOnly { primes: None };
+        let solution = Solution::FrequencyOnly { images: None };
         Ok(Found { solution, powers, amplitudes: Vec::new(), stiffness, checked_orders: None })
     }
 
@@ -178,7 +178,7 @@ impl Task<'_> {
             amplitudes: Vec::new(),
             stiffness: ring.rational(&found.stiffness),
             checked_orders: None,
-            solution: Solution::FrequencyOnly { primes: Some(found.primes) },
+            solution: Solution::FrequencyOnly { images: Some(found.images) },
         };
         Ok((Route::Frequency, found))
     }

@@ -23,6 +23,8 @@ struct Method {
     primes: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     proof_primes: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chance: Option<f64>,
 }
 
 impl Serialize for Derivation {
@@ -33,24 +35,21 @@ impl Serialize for Derivation {
         let solution: Vec<String> =
             orders.clone().into_par_iter().map(|n| self.print_solution(n, Style::Text)).collect();
         let terms: Vec<usize> = orders.map(|n| self.terms(n)).collect();
-        let (name, proved) = match &self.solution {
-            Solution::Rational(proved) => {
-                ("multi-modular, proved", Some((proved.primes, proved.proof_primes)))
-            }
-            // Two more judge what is lifted.
-            Solution::FrequencyOnly { primes: Some(primes) } => {
-                ("multi-modular frequency, checked at values of eps", Some((*primes, primes + 2)))
-            }
-            Solution::FrequencyOnly { primes: None } => ("energy integral", None),
-            Solution::Clock(_) | Solution::Lobachevsky(_) => {
-                ("Lobachevsky ring over Q[mu_m]", None)
-            }
-        };
-        let method = Method {
-            name,
-            route: self.route.name(),
-            primes: proved.map(|(primes, _)| primes),
-            proof_primes: proved.map(|(_, all)| all),
+        let route = self.route.name();
+        let named = |name| Method { name, route, primes: None, proof_primes: None, chance: None };
+        let method = match &self.solution {
+            Solution::Rational(proved) => Method {
+                primes: Some(proved.primes),
+                proof_primes: Some(proved.proof_primes),
+                ..named("multi-modular, proved")
+            },
+            Solution::FrequencyOnly { images: Some(images) } => Method {
+                primes: Some(images.primes),
+                chance: Some(images.chance),
+                ..named("multi-modular frequency, checked at values of eps")
+            },
+            Solution::FrequencyOnly { images: None } => named("energy integral"),
+            Solution::Clock(_) | Solution::Lobachevsky(_) => named("Lobachevsky ring over Q[mu_m]"),
         };
         let checked = self.checked_orders;
         let mut map = serializer.serialize_map(None)?;

@@ -8,8 +8,7 @@
 //!
 //! An image has half as many points as its functions have harmonics: the first harmonic, and so the frequency, is not
 //! reached by what they mix up (`Job::check_trace`). All that was formed modulo a prime is held against its operands at
-//! three numbers in the place of eps, where an image that is wrong passes with a chance below 2^-50: one of M images with a
-//! chance below M 2^-50. One image more, of all harmonics, is substituted into the equation in full and takes no part.
+//! three numbers in the place of eps, where an image that is wrong passes with a chance below (N/2^28)^3. One image more, of all harmonics, is substituted into the equation in full and takes no part.
 
 use crate::image::{Image, Job};
 use crate::images::Images;
@@ -36,12 +35,29 @@ pub struct BoundedFrequency {
     pub frequency: Vec<Rational>,
     /// T_n of sqrt(kappa) T/2pi.
     pub period: Vec<Rational>,
-    /// The number of primes that determine it.
+    /// What it was lifted from.
+    pub images: CheckedImages,
+}
+
+/// Images of a frequency, modulo primes whose product is more than its numbers can hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CheckedImages {
+    /// The number M of primes.
     pub primes: usize,
+    /// That one of the images is wrong and passes its check has a chance below this, M (N/2^28)^3: errors that know nothing of
+    /// the three numbers agree at one of them with a chance of N/p, and every p is above 2^28.
+    pub chance: f64,
+}
+
+impl CheckedImages {
+    fn new(primes: usize, order: usize) -> Self {
+        let once = order as f64 / 2f64.powi(28);
+        Self { primes, chance: primes as f64 * once.powi(3) }
+    }
 }
 
 /// Derives the series of the frequency of a polynomial equation over Q, for n = 0, ..., `order`: exact, but for a wrong
-/// image that passes with a chance below 2^-50, of M primes with a chance below M 2^-50.
+/// image that passes, with a chance that [`CheckedImages`] states.
 ///
 /// The same numbers as [`crate::derive`], without the solution: no memory for it, no residual modulo every prime.
 ///
@@ -137,7 +153,8 @@ impl<P: Iterator<Item = PrimeFields>> Lifting<'_, P> {
         }
         let [squared, frequency, period] = series;
         let stiffness = job.stiffness.clone();
-        Ok(BoundedFrequency { stiffness, squared, frequency, period, primes })
+        let images = CheckedImages::new(primes, job.request.order);
+        Ok(BoundedFrequency { stiffness, squared, frequency, period, images })
     }
 
     /// The bits that the orders will need if the numbers that vanish in the image that judges do.
@@ -290,9 +307,10 @@ mod tests {
         }
         let alone = frequency(&equation, &NoNames, cycle, order, &stop, &mut |_| true).unwrap();
         let least = (longest / 30) as usize;
-        assert!((least..=2 * least).contains(&alone.primes), "{} {least}", alone.primes);
+        let primes = alone.images.primes;
+        assert!((least..=2 * least).contains(&primes), "{primes} {least}");
         // The norms cost some ten bits per order.
-        assert!(alone.primes * 3 <= whole.primes * 5, "{} {}", alone.primes, whole.primes);
+        assert!(primes * 3 <= whole.primes * 5, "{primes} {}", whole.primes);
     }
 
     /// Everything that is formed, changed in one harmonic, modulo one prime: some numbers in the place of eps are enough to

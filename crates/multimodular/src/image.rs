@@ -16,8 +16,7 @@ use lindstedt_series::Series;
 use rug::Rational;
 use std::sync::Arc;
 
-/// Numbers in the place of eps at which an image of the frequency is checked: of three, each of 28 bits and more, a wrong
-/// one passes all with a chance below 2^-50 up to order 2^11.
+/// Numbers in the place of eps at which an image of the frequency is checked ([`crate::CheckedImages`]).
 const PARAMETERS: u32 = 3;
 
 /// The numbers of an order that every image has, in this sequence.

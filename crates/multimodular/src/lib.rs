@@ -23,7 +23,7 @@ mod place;
 #[cfg(test)]
 mod tests;
 
-pub use frequency::{BoundedFrequency, frequency};
+pub use frequency::{BoundedFrequency, CheckedImages, frequency};
 pub use function::{Fraction, Function};
 use image::Job;
 use images::Images;

@@ -249,13 +249,13 @@ impl Board<'_> {
                 vanishes(last)
             ),
             (_, Some(last)) => vanishes(last) + ".",
-            (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
-                "From {primes} primes below 2^30, more than its numbers can hold by bounds proved in advance; no solution.\n\
-                 All that was formed modulo them was held against its operands at three numbers in the place of eps: what is\n\
-                 wrong passes with a chance below 2^-50, one of {primes} with a chance below {primes}*2^-50 = {:.1e}.",
-                *primes as f64 * 2f64.powi(-50)
+            (Solution::FrequencyOnly { images: Some(images) }, None) => format!(
+                "From {} primes below 2^30, more than its numbers can hold by bounds proved in advance; no solution.\n\
+                 All that was formed modulo them was held against its operands at three numbers in the place of eps: that\n\
+                 something is wrong modulo one of them and passes has a chance below {:.1e}.",
+                images.primes, images.chance
             ),
-            (Solution::FrequencyOnly { primes: None }, None) => {
+            (Solution::FrequencyOnly { images: None }, None) => {
                 "By the energy integral; no solution, so nothing to substitute.".to_owned()
             }
             (_, None) => "Not substituted into the equation: not checked.".to_owned(),
