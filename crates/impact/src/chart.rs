@@ -5,7 +5,8 @@ use crate::characteristic::{Characteristic, Kick};
 use crate::error::ImpactError;
 use crate::flight::clearance;
 use crate::flow::{Flow, Scratch, free_delay};
-use crate::map::Verdict;
+use crate::lanes::{Columns, LANES, Lanes};
+use crate::map::{ImpactMap, Verdict};
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
 pub use crate::parameters::Swept;
@@ -157,7 +158,7 @@ pub fn chart(
         points.resize(before + width * filled.len(), Point::EMPTY);
         let lines = points[before..].par_chunks_mut(width).zip(&mut filled).enumerate();
         let finished = lines.try_for_each_init(
-            || Scratch::new(order),
+            || (Scratch::new(order), Scratch::new(order)),
             |scratch, (row, (line, filled))| {
                 *filled = fill(base, plan, rows.start + first + row, (line, scratch), &|| {
                     observer(done.load(Ordering::Relaxed))
@@ -182,25 +183,44 @@ fn fill(
     base: &Parameters<f64>,
     plan: &Plan,
     row: usize,
-    (line, scratch): (&mut [Point], &mut Scratch<f64>),
+    (line, scratch): (&mut [Point], &mut Buffers),
     goes_on: &dyn Fn() -> bool,
 ) -> usize {
     let mut parameters = base.clone();
     plan.rows.set(row, &mut parameters);
     let mut seeds = Vec::new();
-    let mut fixed = Fixed::new(&parameters, plan);
-    for (column, point) in line.iter_mut().enumerate() {
-        plan.columns.set(column, &mut parameters);
-        if !plan.columns.is_gain() {
-            fixed = Fixed::new(&parameters, plan);
+    let row = Fixed::new(&parameters, plan);
+    let mut columns = match (plan.predictor, &row.ground) {
+        (Some((_, order)), Some(ground)) if plan.columns.is_gain() => {
+            Some(Columns::new(plan, order, &parameters, ground))
         }
-        *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
-        if column % 256 == 255 && !goes_on() {
-            return column + 1;
+        _ => None,
+    };
+    for (n, points) in line.chunks_mut(LANES).enumerate() {
+        let first = n * LANES;
+        let whole = columns.as_mut().filter(|_| points.len() == LANES);
+        let maps = whole.map(|columns| columns.maps(first, &mut scratch.1));
+        for (k, point) in points.iter_mut().enumerate() {
+            if maps.is_none() || plan.exact.is_some() {
+                plan.columns.set(first + k, &mut parameters);
+            }
+            let column = (!plan.columns.is_gain()).then(|| Fixed::new(&parameters, plan));
+            let fixed = column.as_ref().unwrap_or(&row);
+            let map = match &maps {
+                Some(maps) => maps[k].clone(),
+                None => fixed.map(&parameters, plan, &mut scratch.0),
+            };
+            *point = evaluate(&parameters, fixed, plan, map, &mut seeds);
+        }
+        if (first + LANES).is_multiple_of(256) && !goes_on() {
+            return first + points.len();
         }
     }
     line.len()
 }
+
+/// For single points, and for several side by side.
+type Buffers = (Scratch<f64>, Scratch<Lanes>);
 
 /// What does not depend on the gains A, B.
 struct Fixed {
@@ -245,6 +265,17 @@ impl Fixed {
             orbit,
         }
     }
+    /// The map that averaging predicts.
+    fn map(
+        &self,
+        parameters: &Parameters<f64>,
+        plan: &Plan,
+        scratch: &mut Scratch<f64>,
+    ) -> Option<ImpactMap<f64>> {
+        let (ground, (_, order)) = (self.ground.as_ref()?, plan.predictor?);
+        scratch.fill(parameters, &self.time, &self.delay, order);
+        ground.map(&scratch.flow()?).ok()
+    }
     fn orbit(&self) -> Option<&Orbit<f64>> {
         self.orbit.as_ref().and_then(|found| found.as_ref().ok())
     }
@@ -254,16 +285,14 @@ fn evaluate(
     parameters: &Parameters<f64>,
     fixed: &Fixed,
     plan: &Plan,
-    scratch: &mut Scratch<f64>,
+    map: Option<ImpactMap<f64>>,
     seeds: &mut Vec<Complex<f64>>,
 ) -> Point {
     let mut point = Point { penetrates: fixed.penetrates, ..Point::EMPTY };
     let predicted = match (plan.predictor, fixed.orbit()) {
-        (Some((Predictor::Kbm(_), order)), _) => fixed.ground.as_ref().and_then(|ground| {
-            scratch.fill(parameters, &fixed.time, &fixed.delay, order);
-            let map = ground.map(&scratch.flow()?).ok()?;
-            Some((map.verdict(), plan.radius.then(|| map.spectral_radius())))
-        }),
+        (Some((Predictor::Kbm(_), _)), _) => {
+            map.map(|map| (map.verdict(), plan.radius.then(|| map.spectral_radius())))
+        }
         (Some((Predictor::ImpactAware(kick), order)), Some(orbit)) => {
             let found = impact_aware(parameters, orbit, kick, order, &Stop::default()).ok();
             found.map(|found| (found.verdict(), plan.radius.then(|| found.spectral_radius())))

@@ -96,6 +96,17 @@ impl<S: Real> Drive<S> {
             branch: parameters.branch,
         })
     }
+    /// The same in other numbers.
+    pub(crate) fn map<T>(&self, number: impl Fn(&S) -> T) -> Drive<T> {
+        Drive {
+            omega: number(&self.omega),
+            period: number(&self.period),
+            restitution: number(&self.restitution),
+            wall: number(&self.wall),
+            forced_amplitude: number(&self.forced_amplitude),
+            branch: self.branch,
+        }
+    }
 }
 
 /// The orbit of `flow` under `drive`.
@@ -126,12 +137,14 @@ pub(crate) fn equivalent_orbit_here<S: Real>(
     let sin = (half_sin.clone() * half_cos).doubled();
     let versed_angle = half_sin.square().doubled(); // 1 - cos theta
     let exponent = rate.clone() * period;
-    let growing = exponent.to_f64() > 0.0;
+    let undecided =
+        || ImpactError::Undecided { what: "the orbit of the prediction", bits: s.precision() };
+    let growing = exponent.holds(|x| x > 0.0).ok_or_else(undecided)?;
     let decay = if growing { -exponent.clone() } else { exponent.clone() };
     // All of E, 1/E, cos times e = min(E, 1/E).
     // One of e and 1 - e is small; it is the one computed.
     let one = s.integer(1);
-    let (e, gap) = if decay.to_f64() > -0.5 {
+    let (e, gap) = if decay.holds(|x| x > -0.5).ok_or_else(undecided)? {
         let gap = -decay.exp_m1();
         (one.clone() - &gap, gap)
     } else {
@@ -143,15 +156,12 @@ pub(crate) fn equivalent_orbit_here<S: Real>(
     let large = gap.clone() + &versed; // 1 - e cos
     let small = versed - e.clone() * &gap; // e^2 - e cos
     let (e_minus, inverse_minus) = if growing { (large, small) } else { (small, large) };
-    let size = delta.to_f64() / e.to_f64();
     if !delta.is_finite() {
-        return Err(ImpactError::Undecided {
-            what: "the orbit of the prediction",
-            bits: s.precision(),
-        });
+        return Err(undecided());
     }
-    if size < PERIODIC || !delta.is_positive() {
-        return Err(ImpactError::PeriodicFreeFlow { delta: size });
+    let true_delta = delta.clone() / &e;
+    if true_delta.holds(|delta| delta < PERIODIC) != Some(false) || !delta.is_positive() {
+        return Err(ImpactError::PeriodicFreeFlow { delta: true_delta.to_f64() });
     }
     let scaled = frequency.clone() * &delta;
     let jump = restitution.clone() + &restitution.integer(1);
@@ -190,7 +200,7 @@ pub(crate) fn equivalent_orbit_here<S: Real>(
         period: period.clone(),
         theta,
         growth,
-        delta: delta / &e,
+        delta: true_delta,
         kappa,
         q,
         discriminant,

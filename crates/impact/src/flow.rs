@@ -72,6 +72,7 @@ impl<S: Real> Scratch<S> {
         Self { terms: buffer(), slopes: buffer(), delayed: buffer(), coupled: buffer(), sum: None }
     }
     /// Runs the recursion; allocates only while the buffers grow.
+    #[inline(always)]
     pub(crate) fn fill(
         &mut self,
         parameters: &Parameters<S>,
@@ -114,17 +115,20 @@ impl<S: Real> Scratch<S> {
         self.sum = Some(sum);
     }
     /// w_(m-1) and e_m from lambda_m and B e_(m-1).
+    #[inline(always)]
     fn continue_with(&mut self, next: &Complex<S>, driven: Complex<S>, time: &S) -> Complex<S> {
         let m = i64::try_from(self.terms.len()).unwrap_or(i64::MAX);
         let weight = time.integer(m);
         self.coupled.push(driven + next);
         self.slopes.push(next.scaled(&weight));
-        let zero = Complex::real(time.integer(0));
-        let products = self.slopes.iter().zip(self.delayed.iter().rev());
-        let sum = products.fold(zero, |sum, (slope, e)| sum + slope.clone() * e);
+        let mut sum = Complex::real(time.integer(0));
+        for (slope, e) in self.slopes.iter().zip(self.delayed.iter().rev()) {
+            sum = sum + slope.clone() * e;
+        }
         sum.scaled(&-(time.clone() / weight))
     }
     /// The flow of the sum of all terms (eps = 1).
+    #[inline(always)]
     pub(crate) fn flow(&self) -> Option<Flow<S>> {
         let Complex { re, im } = self.sum.clone()?;
         Some(Flow { growth_rate: re, frequency: im })
@@ -160,6 +164,7 @@ impl<S: Real> Flow<S> {
     ///
     /// # Errors
     /// [`ImpactError::NotApplicable`] unless Omega > 0 and both numbers are finite.
+    #[inline(always)]
     pub fn validate(&self) -> Result<(), ImpactError> {
         if self.frequency.is_positive()
             && self.frequency.is_finite()

@@ -55,6 +55,7 @@ pub mod flight;
 pub mod flip;
 pub mod flow;
 pub mod kick;
+mod lanes;
 pub mod linearised;
 pub mod map;
 pub mod orbit;

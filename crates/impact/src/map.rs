@@ -54,6 +54,15 @@ impl<S: Real> Amplitudes<S> {
             force_sin: orbit.forced_amplitude.clone() * &orbit.phase.1,
         }
     }
+    /// The same in other numbers.
+    pub(crate) fn map<T>(&self, number: impl Fn(&S) -> T) -> Amplitudes<T> {
+        Amplitudes {
+            cosine: number(&self.cosine),
+            sine: number(&self.sine),
+            force_cos: number(&self.force_cos),
+            force_sin: number(&self.force_sin),
+        }
+    }
 }
 
 /// (16), the determinant of the linearised equations of one flight and impact: with
@@ -65,6 +74,7 @@ impl<S: Real> Amplitudes<S> {
 ///          + Z ((R_r-1) Omega cos theta + (R_r+1) R sin theta))
 /// b_0 = R_r Omega E^2 (p/omega - Z)
 /// ```
+#[inline(always)]
 pub(crate) fn polynomial<S: Real>(
     flow: &Flow<S>,
     drive: &Drive<S>,
@@ -98,6 +108,7 @@ impl<S: Real> EquivalentOrbit<S> {
 
 impl<S: Real> Polynomial<S> {
     /// The map with this characteristic polynomial; not finite where b_2 may be zero.
+    #[inline(always)]
     pub fn map(&self) -> ImpactMap<S> {
         ImpactMap {
             trace: -(self.linear.clone() / &self.quadratic),
@@ -117,16 +128,19 @@ impl<S: Real> Polynomial<S> {
 impl<S: Real> ImpactMap<S> {
     /// The map of a free flow between impacts with saltation sigma:
     /// trace = E (sigma sin(theta)/Omega - 2 R_r cos theta), determinant = (R_r E)^2.
+    #[inline(always)]
     pub fn from_saltation(flow: &Flow<S>, drive: &Drive<S>, saltation: &S) -> Self {
         let angle = (flow.frequency.clone() * &drive.period).sin_cos();
         let growth = (flow.growth_rate.clone() * &drive.period).exp();
         Self::compose(&angle, &growth, &flow.frequency, &drive.restitution, saltation)
     }
     /// The map of an orbit with the flow it belongs to.
+    #[inline(always)]
     pub fn of_orbit(flow: &Flow<S>, drive: &Drive<S>, orbit: &EquivalentOrbit<S>) -> Self {
         let angle = &orbit.theta_sin_cos;
         Self::compose(angle, &orbit.growth, &flow.frequency, &drive.restitution, &orbit.saltation)
     }
+    #[inline(always)]
     fn compose(
         (sin, cos): &(S, S),
         growth: &S,

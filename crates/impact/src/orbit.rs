@@ -164,6 +164,7 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
 }
 
 /// R_r = 0 leaves the wall only with a negative acceleration.
+#[inline(always)]
 pub(crate) fn refuse_sticking<S: Real>(restitution: &S, after: &S) -> Result<(), ImpactError> {
     if restitution.sign().is_some_and(|sign| sign.is_eq()) && !after.is_negative() {
         return Err(ImpactError::Sticking { acceleration: after.to_f64() });

@@ -91,6 +91,21 @@ impl<S> Parameters<S> {
             Swept::VelocityGain => &mut self.velocity_gain,
         }
     }
+    /// The same in other numbers.
+    pub(crate) fn map<T>(&self, number: impl Fn(&S) -> T) -> Parameters<T> {
+        Parameters {
+            alpha: number(&self.alpha),
+            omega: number(&self.omega),
+            periods: self.periods,
+            restitution: number(&self.restitution),
+            wall: number(&self.wall),
+            damping: number(&self.damping),
+            force: number(&self.force),
+            displacement_gain: number(&self.displacement_gain),
+            velocity_gain: number(&self.velocity_gain),
+            branch: self.branch,
+        }
+    }
 }
 
 impl<S: Real> Parameters<S> {
@@ -119,18 +134,7 @@ impl<S: Real> Parameters<S> {
     }
     /// The midpoints.
     pub fn to_f64(&self) -> Parameters<f64> {
-        Parameters {
-            alpha: self.alpha.to_f64(),
-            omega: self.omega.to_f64(),
-            periods: self.periods,
-            restitution: self.restitution.to_f64(),
-            wall: self.wall.to_f64(),
-            damping: self.damping.to_f64(),
-            force: self.force.to_f64(),
-            displacement_gain: self.displacement_gain.to_f64(),
-            velocity_gain: self.velocity_gain.to_f64(),
-            branch: self.branch,
-        }
+        self.map(S::to_f64)
     }
     /// Checks the domain of every parameter.
     ///
@@ -176,20 +180,6 @@ impl<S: Real> Parameters<S> {
 pub type ExactParameters = Parameters<Exact>;
 
 impl ExactParameters {
-    fn map<S>(&self, number: impl Fn(&Exact) -> S) -> Parameters<S> {
-        Parameters {
-            alpha: number(&self.alpha),
-            omega: number(&self.omega),
-            periods: self.periods,
-            restitution: number(&self.restitution),
-            wall: number(&self.wall),
-            damping: number(&self.damping),
-            force: number(&self.force),
-            displacement_gain: number(&self.displacement_gain),
-            velocity_gain: number(&self.velocity_gain),
-            branch: self.branch,
-        }
-    }
     /// Enclosures at the given precision.
     #[must_use]
     pub fn certified(&self, bits: u32) -> Parameters<Certified> {

@@ -8,7 +8,7 @@
 use crate::equivalent::{Drive, EquivalentOrbit, equivalent_orbit, equivalent_orbit_here};
 use crate::error::ImpactError;
 use crate::flow::{Flow, Rates};
-use crate::map::{ImpactMap, Polynomial};
+use crate::map::{Amplitudes, ImpactMap, Polynomial, polynomial};
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
 use lindstedt_number::complex::Complex;
@@ -69,25 +69,29 @@ pub fn predict<S: Real>(
 ) -> Result<Prediction<S>, ImpactError> {
     flow.validate()?;
     let ground = Ground::new(variant, parameters, true_orbit)?;
-    let (form, polynomial) = match &ground {
-        Ground::Own(drive) => {
-            let form = equivalent_orbit(flow, drive)?;
-            let polynomial = form.polynomial(flow, drive);
-            (Some(form), Some(polynomial))
-        }
-        Ground::Literal(drive, form) => (Some(form.clone()), Some(form.polynomial(flow, drive))),
-        Ground::True(..) => (None, None),
+    let form = match &ground {
+        Ground::Own(drive) => Some((drive, equivalent_orbit(flow, drive)?)),
+        Ground::Literal(drive, _) => Some((drive, uncontrolled_orbit(parameters, drive)?)),
+        Ground::True(..) => None,
     };
+    let polynomial = form.as_ref().map(|(drive, form)| form.polynomial(flow, drive));
     let map = ground.map(flow)?;
-    Ok(Prediction { flow: flow.clone(), orbit: form, polynomial, map })
+    Ok(Prediction { flow: flow.clone(), orbit: form.map(|(_, form)| form), polynomial, map })
+}
+
+fn uncontrolled_orbit<S: Real>(
+    parameters: &Parameters<S>,
+    drive: &Drive<S>,
+) -> Result<EquivalentOrbit<S>, ImpactError> {
+    equivalent_orbit(&Flow::uncontrolled(parameters)?, drive)
 }
 
 /// What a variant takes from the oscillator besides the flow: nothing of it depends on the gains A, B.
 pub(crate) enum Ground<S> {
     /// E.
     Own(Drive<S>),
-    /// P: the orbit of the uncontrolled flow.
-    Literal(Drive<S>, EquivalentOrbit<S>),
+    /// P: the amplitudes of the orbit of the uncontrolled flow.
+    Literal(Drive<S>, Amplitudes<S>),
     /// S: the saltation of the true orbit.
     True(Drive<S>, S),
 }
@@ -115,22 +119,32 @@ impl<S: Real> Ground<S> {
             (Variant::E, _) => Self::Own(Drive::new(parameters)?),
             (Variant::P, _) => {
                 let drive = Drive::new(parameters)?;
-                let form = equivalent_orbit(&Flow::uncontrolled(parameters)?, &drive)?;
-                Self::Literal(drive, form)
+                let amplitudes = Amplitudes::of(&uncontrolled_orbit(parameters, &drive)?);
+                Self::Literal(drive, amplitudes)
             }
             (Variant::S, Some(orbit)) => of_orbit(orbit),
             (Variant::S, None) => of_orbit(&orbit(parameters)?),
         })
     }
 
+    /// The same in other numbers.
+    pub(crate) fn convert<T>(&self, number: impl Fn(&S) -> T + Copy) -> Ground<T> {
+        match self {
+            Self::Own(drive) => Ground::Own(drive.map(number)),
+            Self::Literal(drive, form) => Ground::Literal(drive.map(number), form.map(number)),
+            Self::True(drive, saltation) => Ground::True(drive.map(number), number(saltation)),
+        }
+    }
+
     /// The predicted map.
+    #[inline(always)]
     pub(crate) fn map(&self, flow: &Flow<S>) -> Result<ImpactMap<S>, ImpactError> {
         flow.validate()?;
         Ok(match self {
             Self::Own(drive) => {
                 ImpactMap::of_orbit(flow, drive, &equivalent_orbit_here(flow, drive)?)
             }
-            Self::Literal(drive, form) => form.polynomial(flow, drive).map(),
+            Self::Literal(drive, form) => polynomial(flow, drive, form).map(),
             Self::True(drive, saltation) => ImpactMap::from_saltation(flow, drive, saltation),
         })
     }

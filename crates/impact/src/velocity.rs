@@ -24,25 +24,28 @@ pub(crate) struct VelocityEquation<S> {
 }
 
 /// v = (-h +- sqrt(disc))/a, by g/(-h -+ sqrt(disc)) where that does not cancel.
+#[inline(always)]
 pub(crate) fn impact_velocity<S: Real>(
     equation: &VelocityEquation<S>,
     branch: Branch,
 ) -> Result<S, ImpactError> {
     let VelocityEquation { quadratic: a, half_linear: h, constant: g, discriminant, .. } = equation;
-    let size = a.to_f64() * equation.resonance_scale;
+    let size = |a: f64| a * equation.resonance_scale;
     let out_of_range =
         || ImpactError::Undecided { what: "the impact velocity", bits: a.precision() };
-    if !size.is_finite() {
+    if a.holds(|a| size(a).is_finite()) != Some(true) {
         return Err(out_of_range());
     }
-    if a.sign().is_none_or(|sign| sign.is_eq()) || size.sqrt() < RESONANCE {
-        return Err(ImpactError::ImpactResonance { size });
+    if a.sign().is_none_or(|sign| sign.is_eq())
+        || a.holds(|a| size(a).sqrt() < RESONANCE) != Some(false)
+    {
+        return Err(ImpactError::ImpactResonance { size: size(a.to_f64()) });
     }
     if discriminant.is_negative() {
         return Err(ImpactError::BeyondFold { discriminant: discriminant.to_f64() });
     }
     let root = discriminant.sqrt();
-    let h_positive = h.to_f64() > 0.0;
+    let h_positive = h.holds(|h| h > 0.0).ok_or_else(out_of_range)?;
     let velocity = match (branch, h_positive) {
         (Branch::Plus, false) => (root - h) / a,
         (Branch::Plus, true) => -(g.clone() / (root + h)),
@@ -59,7 +62,7 @@ pub(crate) fn impact_velocity<S: Real>(
         }
         return Err(ImpactError::NoPositiveVelocity { velocity: velocity.to_f64() });
     }
-    if velocity.to_f64() < GRAZING * equation.velocity_scale {
+    if velocity.holds(|v| v < GRAZING * equation.velocity_scale) != Some(false) {
         return Err(grazing(&velocity, equation.velocity_scale));
     }
     Ok(velocity)

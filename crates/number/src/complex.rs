@@ -14,11 +14,13 @@ pub struct Complex<S> {
 
 impl<S: Real> Complex<S> {
     /// re + i im.
+    #[inline(always)]
     #[must_use]
     pub fn new(re: S, im: S) -> Self {
         Self { re, im }
     }
     /// A real number.
+    #[inline(always)]
     #[must_use]
     pub fn real(re: S) -> Self {
         let im = re.integer(0);
@@ -30,6 +32,7 @@ impl<S: Real> Complex<S> {
         Self::new(self.re.clone(), -self.im.clone())
     }
     /// The product with a real number.
+    #[inline(always)]
     #[must_use]
     pub fn scaled(&self, factor: &S) -> Self {
         Self::new(self.re.clone() * factor, self.im.clone() * factor)
@@ -107,6 +110,7 @@ impl<S: Real> Complex<S> {
 
 impl<S: Real> Add<&Complex<S>> for Complex<S> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: &Self) -> Self {
         Self::new(self.re + &other.re, self.im + &other.im)
     }
@@ -114,6 +118,7 @@ impl<S: Real> Add<&Complex<S>> for Complex<S> {
 
 impl<S: Real> Sub<&Complex<S>> for Complex<S> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: &Self) -> Self {
         Self::new(self.re - &other.re, self.im - &other.im)
     }
@@ -121,6 +126,7 @@ impl<S: Real> Sub<&Complex<S>> for Complex<S> {
 
 impl<S: Real> Mul<&Complex<S>> for Complex<S> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: &Self) -> Self {
         let re = self.re.clone() * &other.re - self.im.clone() * &other.im;
         let im = self.re * &other.im + self.im * &other.re;
@@ -130,6 +136,7 @@ impl<S: Real> Mul<&Complex<S>> for Complex<S> {
 
 impl<S: Real> Add for Complex<S> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         self + &other
     }
@@ -137,6 +144,7 @@ impl<S: Real> Add for Complex<S> {
 
 impl<S: Real> Sub for Complex<S> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self - &other
     }
@@ -144,6 +152,7 @@ impl<S: Real> Sub for Complex<S> {
 
 impl<S: Real> Mul for Complex<S> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         self * &other
     }
@@ -151,6 +160,7 @@ impl<S: Real> Mul for Complex<S> {
 
 impl<S: Real> Neg for Complex<S> {
     type Output = Self;
+    #[inline(always)]
     fn neg(self) -> Self {
         Self::new(-self.re, -self.im)
     }

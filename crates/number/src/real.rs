@@ -66,18 +66,28 @@ pub trait Real:
     fn precision(&self) -> u32;
 
     /// Twice x.
+    #[inline(always)]
     fn doubled(&self) -> Self {
         self.clone() + self
     }
     /// Half of x.
+    #[inline(always)]
     fn halved(&self) -> Self {
         self.clone() / self.integer(2)
     }
+    /// Whether the midpoint has a property that a formula chooses its way by; nothing where several numbers that are
+    /// computed side by side would go different ways.
+    #[inline(always)]
+    fn holds(&self, property: impl Fn(f64) -> bool) -> Option<bool> {
+        Some(property(self.to_f64()))
+    }
     /// Whether x is proved positive.
+    #[inline(always)]
     fn is_positive(&self) -> bool {
         self.sign() == Some(Ordering::Greater)
     }
     /// Whether x is proved negative.
+    #[inline(always)]
     fn is_negative(&self) -> bool {
         self.sign() == Some(Ordering::Less)
     }

@@ -2,9 +2,11 @@
 
 use crate::support::{close, data, number, parameters};
 use lindstedt_impact::characteristic::{Characteristic, Kick};
+use lindstedt_impact::chart::{Axis, Plan, Predictor, Swept, chart};
 use lindstedt_impact::equivalent::Drive;
 use lindstedt_impact::flow::{Flow, rates};
 use lindstedt_impact::orbit::orbit;
+use lindstedt_impact::parameters::Parameters;
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow};
 use lindstedt_impact::zeros::multipliers;
 
@@ -71,4 +73,55 @@ fn doubles_lose_three_digits_near_grazing() {
     let drive = Drive::new(&p).unwrap();
     let condition = p.wall / (drive.forced_amplitude - p.wall);
     assert!((condition - 305.0).abs() < 1.0, "{condition}");
+}
+
+/// The columns of a chart are computed side by side; a point alone goes through one double after the other. Same bits,
+/// also where some of those side by side have no orbit, another branch of a formula, or too few neighbours.
+#[test]
+fn columns_side_by_side_are_points_alone() {
+    let (mut found, mut refused) = (0, 0);
+    for (name, reach) in [("O1_A", 0.4), ("O2_k2_stabilised", 0.9), ("plastic", 0.5)] {
+        let mut base = parameters(&data(name)).nearest();
+        for wall in [base.wall, -0.1] {
+            base.wall = wall;
+            for variant in [Variant::E, Variant::P, Variant::S] {
+                for (order, count) in [(1, 43), (2, 8), (6, 67)] {
+                    let counts = same_bits(&base, variant, order, (reach, count));
+                    (found, refused) = (found + counts[0], refused + counts[1]);
+                }
+            }
+        }
+    }
+    assert!(found > 10_000 && refused > 1000, "{found} {refused}");
+}
+
+/// Compares a chart with its points; how many of them have a predicted map, and how many have none.
+fn same_bits(
+    base: &Parameters<f64>,
+    variant: Variant,
+    order: usize,
+    (reach, count): (f64, usize),
+) -> [usize; 2] {
+    let axis = |parameter, count| Axis { parameter, low: -reach, high: reach, count };
+    let plan = Plan {
+        columns: axis(Swept::DisplacementGain, count),
+        rows: axis(Swept::VelocityGain, 11),
+        predictor: Some((Predictor::Kbm(variant), order)),
+        exact: None,
+        radius: true,
+        part: None,
+    };
+    let mut counts = [0; 2];
+    for (n, point) in chart(base, &plan, &|_| true).unwrap().points.iter().enumerate() {
+        let mut p = base.clone();
+        p.displacement_gain = plan.columns.value(n % count);
+        p.velocity_gain = plan.rows.value(n / count);
+        let flow = predicted_flow(&p, &rates(&p, order), order);
+        let map = flow.and_then(|flow| predict(variant, &p, &flow, None)).map(|found| found.map);
+        let alone = map.as_ref().ok().map(|map| (map.verdict(), map.spectral_radius().to_bits()));
+        let radius = point.predicted_radius.to_bits();
+        assert_eq!(point.predicted.map(|verdict| (verdict, radius)), alone, "{p:?} {order}");
+        counts[usize::from(alone.is_none())] += 1;
+    }
+    counts
 }
