@@ -247,3 +247,18 @@ fn remainders_of_six_resonances() {
         }
     }
 }
+
+/// At a Bogdanov-Takens point of order one the states beside it move by the root of what is left out: by terms of order N - 1/2.
+#[test]
+fn states_beside_a_fold_lose_half_an_order() {
+    let case = Oscillator::parse("x'' + x - eps*(1 - x^2)*x' = eps*cos((1 + eps/4)*t)").unwrap();
+    let found = case.verify(&Verify { order: 2, ..Verify::default() }, &Work::default()).unwrap();
+    let steady = found.value.steady.unwrap();
+    let mut slopes: Vec<f64> = steady.states.iter().map(|it| it.observed_order.unwrap()).collect();
+    slopes.sort_by(f64::total_cmp);
+    let near =
+        slopes.iter().zip([1.5, 1.5, 2.0]).all(|(slope, known)| (slope - known).abs() < 0.05);
+    assert!(slopes.len() == 3 && near, "{slopes:?}");
+    assert!(steady.reason.contains("order 2 (1 of 3)") && steady.reason.contains("1/2"));
+    assert!(steady.reason.starts_with("agrees: "));
+}

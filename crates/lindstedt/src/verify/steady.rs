@@ -1,15 +1,18 @@
 //! The steady states of a slow flow of N orders against the periodic orbits of the equation: amplitudes and phases
 //! differ by O(eps^N).
 
-use super::Verify;
+use super::{Verdict, Verify};
 use crate::respond::{Beside, Estimate};
 use crate::{Exact, Oscillator, Work};
 use rug::Rational;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Differences below this part of an amplitude are those of the integration.
-const RESOLVED: f64 = 1e-12;
+/// Differences below this part of an amplitude, divided by |eps|, are those of the integration: an orbit is fixed by rates of
+/// order eps.
+const RESOLVED: f64 = 1e-15;
+/// The observed order may be less than N by so much.
+const TOLERANCE: f64 = 0.1;
 
 /// The comparison of all states.
 #[derive(Clone, Debug, Serialize)]
@@ -19,6 +22,10 @@ pub struct SteadyStates {
     pub expected_order: usize,
     /// Those at the smallest value.
     pub states: Vec<SteadyState>,
+    /// Agrees where every state that is resolved does.
+    pub verdict: Verdict,
+    /// The verdict in words.
+    pub reason: String,
     /// Why there are none.
     pub refused: Option<String>,
 }
@@ -31,8 +38,20 @@ pub struct SteadyState {
     pub amplitudes: Vec<Estimate>,
     /// One line per value.
     pub table: Vec<SteadyDifference>,
-    /// The slope of the last line.
+    /// The last slope.
     pub observed_order: Option<f64>,
+    /// Agrees from N on, and beside N - 1/2: where order one has a fold the states move by the root of what is left out.
+    pub verdict: Verdict,
+}
+
+/// Of a slope.
+fn verdict(observed: Option<f64>, order: usize) -> Verdict {
+    let beyond = observed.map(|n| n - order as f64);
+    match beyond {
+        None => Verdict::Undecided,
+        Some(n) if n >= -TOLERANCE || (n + 0.5).abs() <= TOLERANCE => Verdict::Agrees,
+        Some(_) => Verdict::Disagrees,
+    }
 }
 
 /// How far a state and the orbit near it are apart.
@@ -70,7 +89,8 @@ impl SteadyDifference {
         let Some((state, Some(orbit))) = found else { return line };
         line.orbit = true;
         let size = state.pairs.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let least = RESOLVED * size;
+        let resolved = RESOLVED * (1.0 / small.to_f64().abs()).max(10.0);
+        let least = resolved * size;
         let shown = |x: f64, least: f64| (x > least).then(|| Estimate { value: rounded(x) });
         let largest =
             |list: &mut dyn Iterator<Item = f64>, least| shown(list.fold(0.0, f64::max), least);
@@ -78,11 +98,12 @@ impl SteadyDifference {
         let angle = |x: f64| (x - TAU * (x / TAU).round()).abs();
         let moving = pairs().filter(|(a, _)| a.norm() > 1e-9 * size);
         line.amplitude = largest(&mut pairs().map(|(a, b)| (a.norm() - b.norm()).abs()), least);
-        line.phase = largest(&mut moving.map(|(a, b)| angle(a.arg() - b.arg())), RESOLVED);
+        line.phase = largest(&mut moving.map(|(a, b)| angle(a.arg() - b.arg())), resolved);
         let frequency = state.frequency.zip(orbit.frequency);
-        line.frequency = frequency.and_then(|(a, b)| shown((a - b).abs(), RESOLVED));
+        line.frequency = frequency.and_then(|(a, b)| shown((a - b).abs(), resolved));
         let difference = pairs().map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        line.difference = Some(difference).filter(|it| *it > least);
+        // Of two that far above the error of the integration the slope is right within the tolerance.
+        line.difference = Some(difference).filter(|it| *it > 30.0 * least);
         line
     }
 }
@@ -103,7 +124,13 @@ fn nearest<'a>(list: &'a [Beside], to: &Beside) -> Option<&'a Beside> {
 
 impl SteadyStates {
     pub(super) fn of(oscillator: &Oscillator, question: &Verify, work: &Work) -> Self {
-        let mut found = Self { expected_order: question.order, states: Vec::new(), refused: None };
+        let mut found = Self {
+            expected_order: question.order,
+            states: Vec::new(),
+            verdict: Verdict::Undecided,
+            reason: String::new(),
+            refused: None,
+        };
         let name = oscillator.problem().small.to_string();
         let at = |small: &Rational| {
             let case = oscillator.clone().with(&name, Exact::Rational(small.clone()));
@@ -131,12 +158,40 @@ impl SteadyStates {
                 table[k].slope = pair.map(|(a, b)| rounded((a / b).ln() / (small - before)));
             }
             let amplitudes = state.0.pairs.iter().map(|z| Estimate { value: z.norm() }).collect();
-            let observed_order = table.last().and_then(|line| line.slope);
-            found.states.push(SteadyState { amplitudes, table, observed_order });
+            let observed_order = table.iter().rev().find_map(|line| line.slope);
+            let verdict = verdict(observed_order, question.order);
+            found.states.push(SteadyState { amplitudes, table, observed_order, verdict });
         }
         if found.states.is_empty() {
             found.refused = Some("the slow flow has no steady state but rest".to_owned());
         }
+        found.judge();
         found
+    }
+
+    fn judge(&mut self) {
+        let (order, all) = (self.expected_order, self.states.len());
+        let count = |verdict| self.states.iter().filter(|it| it.verdict == verdict).count();
+        let [agree, disagree, open] =
+            [Verdict::Agrees, Verdict::Disagrees, Verdict::Undecided].map(count);
+        let is_half =
+            |it: &&SteadyState| it.observed_order.is_some_and(|n| n < order as f64 - TOLERANCE);
+        let half = self.states.iter().filter(is_half).count() - disagree;
+        let (verdict, word) = match (agree, disagree) {
+            (_, 1..) => (Verdict::Disagrees, "disagrees"),
+            (1.., 0) => (Verdict::Agrees, "agrees"),
+            (0, 0) => (Verdict::Undecided, "undecided"),
+        };
+        let full = agree - half;
+        let parts = [
+            (full, format!("of order {order}")),
+            (half, format!("of order {order} - 1/2, as where order one has a fold")),
+            (disagree, "of another order".to_owned()),
+            (open, "not resolved, or no orbit".to_owned()),
+        ];
+        let parts = parts.into_iter().filter(|(n, _)| *n > 0);
+        let parts: Vec<String> = parts.map(|(n, what)| format!("{what} ({n} of {all})")).collect();
+        self.verdict = verdict;
+        self.reason = format!("{word}: differences {}", parts.join(", "));
     }
 }

@@ -34,7 +34,7 @@ fn steady(value: &SteadyStates, small: Text) -> Document {
     }
     let short = |x: &Option<Estimate>, orbit: bool| match x {
         Some(x) => format!("{:.3e}", x.value),
-        None if orbit => "below 1e-12".to_owned(),
+        None if orbit => "unresolved".to_owned(),
         None => "no orbit".to_owned(),
     };
     let frequency = value.states.iter().flat_map(|it| &it.table).any(|it| it.frequency.is_some());
@@ -51,7 +51,7 @@ fn steady(value: &SteadyStates, small: Text) -> Document {
             table = table.row(cells);
         }
     }
-    page.table(table).words(format!("order expected: {}", value.expected_order))
+    page.table(table).words(value.reason.as_str())
 }
 
 impl Present for Answer<Verification> {
