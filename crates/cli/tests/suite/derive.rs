@@ -42,14 +42,7 @@ fn initial_displacement_is_relative() {
     let file = example("duffing");
     for (amplitude, first) in [("amplitude=1", "1/32"), ("amplitude=2", "1/8")] {
         let found = json(&[
-            "derive",
-            &file,
-            "--normalisation",
-            "fundamental",
-            "--order",
-            "1",
-            "--set",
-            amplitude,
+            "derive", &file, "--normalisation", "fundamental", "--order", "1", "--set", amplitude,
         ]);
         let series = &found["series"]["initial_displacement"];
         assert_eq!((&series[0]["exact"], &series[1]["exact"]), (&"1".into(), &first.into()));

@@ -17,16 +17,8 @@ fn random(seed: u64, bound: u64) -> u64 {
 }
 
 const SWEEP: [&str; 10] = [
-    "simulate",
-    "stick-slip",
-    "--sweep",
-    "gamma=0.5..0.7:60",
-    "--skip",
-    "40",
-    "--periods",
-    "20",
-    "--plot",
-    "a.csv",
+    "simulate", "stick-slip", "--sweep", "gamma=0.5..0.7:60", "--skip", "40", "--periods", "20",
+    "--plot", "a.csv",
 ];
 
 /// What a folder may hold besides files without their final name.

@@ -55,11 +55,7 @@ fn an_interruption_ends_the_work() {
         &["simulate", "pendulum", "--set", "amplitude=3", "--digits", "600", "--periods", "4000"],
         &["simulate", "power-law", "--set", "n=-0.99", "--digits", "40"],
         &[
-            "stability",
-            "vibro-impact",
-            "--sweep",
-            "A=-1/3..1/3:3001",
-            "--sweep",
+            "stability", "vibro-impact", "--sweep", "A=-1/3..1/3:3001", "--sweep",
             "B=-1/3..1/3:3001",
         ],
         &["evaluate", "power-law", "--order", "400", "--digits", "800"],

@@ -46,15 +46,7 @@ fn stick_slip_events() {
     let start = format!("{},{}", case["x0"].as_str().unwrap(), case["v0"].as_str().unwrap());
     let end = case["t_end"].as_str().unwrap();
     let found = json(&[
-        "stick-slip",
-        "--set",
-        "gamma=0.6",
-        "--state",
-        &start,
-        "--until",
-        end,
-        "--digits",
-        "25",
+        "stick-slip", "--set", "gamma=0.6", "--state", &start, "--until", end, "--digits", "25",
     ]);
     let (known, events) = (case["events"].as_array().unwrap(), found["events"].as_array().unwrap());
     assert_eq!(known.len(), events.len());

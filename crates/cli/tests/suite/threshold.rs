@@ -179,16 +179,8 @@ fn the_printed_file_and_the_example_are_the_built_in_problem() {
     let shown = lindstedt(&["problems", "--show", "stick-slip"]).stdout;
     let printed = File::with_text("printed", &String::from_utf8(shown).unwrap());
     let arguments = [
-        "--set",
-        "b=5",
-        "--zeros",
-        "vstar=0..1",
-        "--sweep",
-        "vstar=0..1:11",
-        "--sweep",
-        "b=1,5",
-        "--digits",
-        "25",
+        "--set", "b=5", "--zeros", "vstar=0..1", "--sweep", "vstar=0..1:11", "--sweep", "b=1,5",
+        "--digits", "25",
     ];
     let built_in = without(json(&arguments), &["seconds"]);
     assert_eq!(without(printed.json(&arguments), &["seconds"]), built_in);

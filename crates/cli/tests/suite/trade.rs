@@ -55,12 +55,7 @@ fn every_true_error_is_below_the_stated_one() {
 #[test]
 fn rows_have_a_fixed_order() {
     let tiers = [
-        "exact",
-        "energy",
-        "collocation",
-        "collocation-f64",
-        "fourier",
-        "simulation-f64",
+        "exact", "energy", "collocation", "collocation-f64", "fourier", "simulation-f64",
         "simulation",
     ];
     let value = json("power-law", &["--digits", "20,10"]);
