@@ -1,6 +1,5 @@
 //! Signals and limits: from inside an order, a step, a chart; the exit code says which it was.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::program::Folder;
 use std::process::{Child, Command, Stdio};
