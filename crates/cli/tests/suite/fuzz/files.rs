@@ -1,9 +1,10 @@
 //! Problem files with bytes, lines and words changed, in this process.
 
-use super::{Generator, count, not_a_number, number};
+use super::{count, not_a_number, number};
 use lindstedt::unstable::algebra::Stop;
 use lindstedt::{Answer, Error, Evaluate, Oscillator, Refusal, Stability, Threshold, Work};
 use lindstedt_report::{Format, Present, json};
+use lindstedt_tests::Random;
 use serde::Serialize;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -27,7 +28,7 @@ fn seeds() -> Vec<String> {
 }
 
 /// A file with one to four changes.
-fn mutated(g: &mut Generator, seeds: &[String]) -> String {
+fn mutated(g: &mut Random, seeds: &[String]) -> String {
     let mut text: Vec<char> = seeds[g.below(seeds.len())].chars().collect();
     for _ in 0..=g.below(3) {
         let at = g.below(text.len().max(1));
@@ -89,7 +90,7 @@ fn defect(text: &str, limit: Duration) -> Option<String> {
 }
 
 fn attack(seed: u64, count: usize, limit: Duration) {
-    let (mut g, seeds) = (Generator(seed), seeds());
+    let (mut g, seeds) = (Random(seed), seeds());
     let mut found = Vec::new();
     for _ in 0..count {
         let text = mutated(&mut g, &seeds);

@@ -1,6 +1,7 @@
 //! Random command lines, a process each: only so is an exit code one.
 
-use super::{Generator, count, not_a_number, number, refusal};
+use super::{count, not_a_number, number, refusal};
+use lindstedt_tests::Random;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
@@ -61,7 +62,7 @@ const RANGES: [&str; 12] = [
 const COUNTS: [&str; 12] = ["0", "1", "2", "3", "4", "6", "9", "12", "-1", "1000000000", "x", "17"];
 
 /// A random line.
-fn line(g: &mut Generator) -> Vec<String> {
+fn line(g: &mut Random) -> Vec<String> {
     let verb = if g.once_in(60) { "frobnicate" } else { g.pick(&VERBS) };
     let mut list = vec![verb.to_owned()];
     if verb == "problems" {
@@ -83,10 +84,10 @@ fn line(g: &mut Generator) -> Vec<String> {
 }
 
 /// An option, most often one of the verb.
-fn option(g: &mut Generator, verb: &str) -> Vec<String> {
+fn option(g: &mut Random, verb: &str) -> Vec<String> {
     let named = |name: &str, value: String| vec![name.to_owned(), value];
-    let of = |name: &str, g: &mut Generator, list: &[&str]| named(name, g.pick(list).to_owned());
-    let swept = |name: &str, g: &mut Generator| {
+    let of = |name: &str, g: &mut Random, list: &[&str]| named(name, g.pick(list).to_owned());
+    let swept = |name: &str, g: &mut Random| {
         let range = format!("{}={}", g.pick(&NAMES), g.pick(&RANGES));
         named(name, range)
     };
@@ -178,7 +179,7 @@ fn defect(list: &[String], format: &str, limit: &str) -> Option<String> {
 
 /// Runs so many lines on all cores.
 fn attack(seed: u64, count: usize, limit: &'static str) {
-    let mut g = Generator(seed);
+    let mut g = Random(seed);
     let lines: Vec<(Vec<String>, &str)> = (0..count)
         .map(|_| (line(&mut g), g.pick(&["json", "json", "text", "latex", "markdown"])))
         .collect();
