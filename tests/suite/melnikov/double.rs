@@ -8,16 +8,7 @@ use lindstedt_tests::Random;
 use rug::Float;
 
 fn exact(p: &FastPoint) -> StickSlip {
-    let real = |x| Exact::from_f64(x).unwrap();
-    StickSlip {
-        a: real(p.a),
-        b: real(p.b),
-        dry: real(p.dry),
-        alpha: real(p.alpha),
-        beta: real(p.beta),
-        omega: real(p.omega),
-        belt_speed: real(p.belt_speed),
-    }
+    p.map(|x| Exact::from_f64(*x).unwrap())
 }
 
 /// The largest relative error of `count` random points whose terms of G cancel at most fivefold.

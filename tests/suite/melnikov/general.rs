@@ -72,7 +72,7 @@ fn several_harmonics() {
     let balls = Balls::new(BALLS);
     for row in oracle("general.json")["multi_harmonic"]["table"].as_array().unwrap() {
         let harmonics = row["harmonics"].as_array().unwrap().iter().map(|h| Harmonic {
-            order: h["k"].as_u64().unwrap() as u32,
+            number: h["k"].as_u64().unwrap() as u32,
             weight: real(h, "g"),
             phase: real(h, "phase"),
             factor: Factor::ONE,
@@ -222,7 +222,7 @@ fn incommensurate_and_parametric() {
     let other = system(Forcing::single(Exact::from(2))).threshold(balls, Branch::Positive).unwrap();
     let part = |omega, weight| {
         let phase = Exact::from(0);
-        (omega, vec![Harmonic { order: 1, weight, phase, factor: Factor::ONE }])
+        (omega, vec![Harmonic { number: 1, weight, phase, factor: Factor::ONE }])
     };
     let both = Forcing::Incommensurate(vec![
         part(omega(), Exact::from(1)),
