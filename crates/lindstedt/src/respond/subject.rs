@@ -183,7 +183,6 @@ impl<'a> Subject<'a> {
         let unset = names.zip(self.values([None, None])).find(|(name, value)| {
             value.is_none() && !self.swept.iter().flatten().any(|it| it == *name)
         });
-        let problem = self.oscillator.problem().name.to_string();
         let beside = self.slow.system.beside.as_ref();
         let swept = |(name, _): &(&String, Option<Value>)| {
             let names = self.slow.system.angle(name)?.0.parameters();
@@ -195,11 +194,10 @@ impl<'a> Subject<'a> {
             }
             // A detuning that follows from the frequency and the small parameter, which has no value.
             Some((name, _)) if beside.is_some_and(|it| it.symbol == *name) => {
-                let name = self.oscillator.problem().small.to_string();
-                Err(DerivationError::Unset { problem, name }.into())
+                Err(self.oscillator.unset(&*self.oscillator.problem().small))
             }
             Some((name, _)) if name == FAMILY => Err(no_amplitude("has no value")),
-            Some((name, _)) => Err(DerivationError::Unset { problem, name: name.clone() }.into()),
+            Some((name, _)) => Err(self.oscillator.unset(name)),
             None if self.amplitude.is_some_and(|a| !a.is_finite() || a <= 0.0) => {
                 let message = "the largest amplitude is a positive number";
                 Err(Refused::usage("box", message, "--box 2").into())
@@ -306,10 +304,9 @@ impl<'a> Subject<'a> {
     }
 
     /// The values that enter, for the header.
-    pub(super) fn shown_values(&self) -> Vec<(String, String)> {
+    pub(super) fn shown_values(&self) -> impl Iterator<Item = (String, Exact)> {
         let varies = |name: &String| self.swept.iter().flatten().any(|swept| swept == name);
-        let all = self.oscillator.all_values().into_iter();
-        all.filter(|(name, _)| !varies(name)).map(|(n, v)| (n, v.to_string())).collect()
+        self.oscillator.all_values().into_iter().filter(move |(name, _)| !varies(name))
     }
 
     /// Values of an axis at which all states are looked for: a list as it is, of a range some.
@@ -328,10 +325,7 @@ impl<'a> Subject<'a> {
     pub(super) fn samples(&self, axis: &Axis) -> Result<Vec<Exact>, Error> {
         let values = self.chosen(axis).into_iter();
         let Some(factor) = &self.factor else { return Ok(values.collect()) };
-        let unset = || DerivationError::Unset {
-            problem: self.oscillator.problem().name.to_string(),
-            name: self.oscillator.problem().small.to_string(),
-        };
+        let unset = || self.oscillator.unset(&*self.oscillator.problem().small);
         let small = self.small.as_ref().ok_or_else(unset)?;
         let detuning = |value: Exact| {
             let rate = Rational::from(value.as_rational()? / factor);
@@ -605,9 +599,7 @@ fn not_whole() -> Error {
 
 /// Refuses a slow flow that depends on frequencies without a value.
 fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
-    let Some(name) = slow.system.open_frequency() else { return Ok(()) };
-    let problem = oscillator.problem().name.to_string();
-    Err(DerivationError::Unset { problem, name: name.clone() }.into())
+    slow.system.open_frequency().map_or(Ok(()), |name| Err(oscillator.unset(name)))
 }
 
 /// Whether all frequencies are multiples of this name.
