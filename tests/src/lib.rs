@@ -4,11 +4,13 @@ pub mod budget;
 pub mod examples;
 pub mod mathematics;
 pub mod measure;
+mod random;
 
 use lindstedt::{
     Derivation, Quantity, unstable::derivation::Settings, unstable::derivation::derive,
     unstable::problems,
 };
+pub use random::Random;
 
 /// The checked expansion of a built-in problem with its default settings, to an order.
 ///

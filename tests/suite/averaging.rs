@@ -1,8 +1,6 @@
 //! Averaging (Krylov, Bogoliubov, Mitropolsky) against published coefficients, the expansion at
 //! fixed amplitude, characteristic roots and Hopf's bifurcation.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
-
 use lindstedt::unstable::algebra::{AmplitudeAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt::unstable::coeff::PolynomialRing;
 use lindstedt::unstable::coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};

@@ -1,5 +1,4 @@
 //! Duffing and van der Pol: published coefficients, both normalisations, two routes.
-#![allow(clippy::unwrap_used)]
 
 use lindstedt::unstable::algebra::Rationals;
 use lindstedt::unstable::equation::{Condition, Expression};

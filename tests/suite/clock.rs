@@ -1,5 +1,4 @@
 //! The route by one clock: chosen by the equation, equal to the driver's, an order at a time.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 use lindstedt::{Derivation, Derive, Error, Oscillator, Refusal, Route, Solution, Work};
 

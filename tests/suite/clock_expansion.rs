@@ -1,7 +1,5 @@
 //! One clock against the driver, and its judges against wrong expansions.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use lindstedt_algebra::{ClockAlgebra, PhaseAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::{Condition, Expression};

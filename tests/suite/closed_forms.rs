@@ -1,8 +1,6 @@
 //! Certified closed forms of periods against Gamma functions and elliptic integrals in doubles by
 //! the crate `special`, which shares no code with ours.
 
-#![allow(clippy::unwrap_used)]
-
 use lindstedt::{Evaluate, Oscillator, Work};
 use special::{Elliptic, Gamma};
 use std::f64::consts::PI;

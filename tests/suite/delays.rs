@@ -1,7 +1,5 @@
 //! Delays at resonance and between several unknowns, several phases, irrational modes, against the time domain.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use lindstedt::grid::Axis;
 use lindstedt::verify::Verdict;
 use lindstedt::{Oscillator, Respond, Verify, Work};

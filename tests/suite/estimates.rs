@@ -1,6 +1,5 @@
 //! Error estimates of periods on random problems: a true error above its estimate is a failure.
 //! The generator is seeded; the ignored test counts over many more and larger cases.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use lindstedt::unstable::algebra::RationalAlgebra;
 use lindstedt::unstable::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
@@ -8,31 +7,19 @@ use lindstedt::{
     Error, Evaluate, EvaluationError, Number, Oscillator, Quantity, Status, Work,
     unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
 };
+use lindstedt_tests::Random;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
 const BITS: u32 = 300;
 
-/// splitmix64.
-pub struct Generator(pub u64);
+/// A decimal between low and high, in thousandths.
+fn thousandths(g: &mut Random, low: i64, high: i64) -> String {
+    g.thousandths(low, high - 1).to_string()
+}
 
-impl Generator {
-    pub fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % n
-    }
-
-    /// A decimal between low and high, in thousandths.
-    fn thousandths(&mut self, low: i64, high: i64) -> String {
-        let n = low + self.below((high - low) as u64) as i64;
-        format!("{n}/1000")
-    }
-
-    fn method(&mut self) -> Option<Method> {
-        Method::ALL.get(self.below(6) as usize).copied()
-    }
+fn method(g: &mut Random) -> Option<Method> {
+    Method::ALL.get(g.below(6)).copied()
 }
 
 /// The least orders of the bands.
@@ -119,27 +106,27 @@ fn over_two_pi(period: &str) -> Float {
 }
 
 /// A random problem with a closed form: name, parameter and value.
-fn random(g: &mut Generator) -> (&'static str, &'static str, String) {
+fn random(g: &mut Random) -> (&'static str, &'static str, String) {
     match g.below(4) {
-        0 => ("power-law", "n", g.thousandths(-997, 300)),
+        0 => ("power-law", "n", thousandths(g, -997, 300)),
         1 => {
             let exponent = g.below(4);
-            ("power-law", "n", g.thousandths(301, 3 * 10i64.pow(3 + exponent as u32)))
+            ("power-law", "n", thousandths(g, 301, 3 * 10i64.pow(3 + exponent as u32)))
         }
         2 => {
-            let high = [0, 3_000, 300_000][g.below(3) as usize];
-            ("duffing", "eps", g.thousandths(-950, high))
+            let high = g.pick(&[0, 3_000, 300_000]);
+            ("duffing", "eps", thousandths(g, -950, high))
         }
-        _ => ("pendulum", "amplitude", g.thousandths(20, 3_100)),
+        _ => ("pendulum", "amplitude", thousandths(g, 20, 3_100)),
     }
 }
 
-fn closed_forms(seed: u64, cases: usize, most: u64, count: &mut Count) {
-    let mut g = Generator(seed);
+fn closed_forms(seed: u64, cases: usize, most: usize, count: &mut Count) {
+    let mut g = Random(seed);
     for _ in 0..cases {
         let (name, parameter, value) = random(&mut g);
-        let order = 5 + g.below(most - 5) as usize;
-        for method in [None, g.method(), g.method()] {
+        let order = 5 + g.below(most - 5);
+        for method in [None, method(&mut g), method(&mut g)] {
             let question = Evaluate { order: Some(order), method, ..Evaluate::default() };
             let oscillator = Oscillator::builtin(name).unwrap().set(parameter, &value).unwrap();
             let found = oscillator.evaluate(&question, &Work::default());
@@ -169,14 +156,14 @@ fn limit_cycle(order: usize) -> Vec<Rational> {
 }
 
 fn van_der_pol(seed: u64, order: usize, cases: usize, count: &mut Count) {
-    let mut g = Generator(seed);
+    let mut g = Random(seed);
     let series = limit_cycle(order);
     let references = include_str!("../data/van-der-pol/periods.txt").lines();
     let references: Vec<(&str, &str)> =
         references.filter(|l| !l.starts_with('#')).map(|l| l.split_once(' ').unwrap()).collect();
     for _ in 0..cases {
-        let (eps, period) = references[g.below(references.len() as u64) as usize];
-        let known = 6 + g.below(series.len() as u64 - 5) as usize;
+        let (eps, period) = g.pick(&references);
+        let known = 6 + g.below(series.len() - 5);
         let eps_value: Rational = eps.parse().unwrap();
         let source = |bits: u32| {
             Some(Sample {
@@ -191,7 +178,7 @@ fn van_der_pol(seed: u64, order: usize, cases: usize, count: &mut Count) {
                 bits,
             })
         };
-        for method in [None, g.method(), g.method()] {
+        for method in [None, method(&mut g), method(&mut g)] {
             let found = resum(&source, method, 100, &Default::default());
             let label = format!("van-der-pol {eps} {known} terms {method:?}");
             count.add(
@@ -220,14 +207,14 @@ const PROVED: [(&str, i64, i64); 10] = [
 ];
 
 /// Truth by the proof of the orbit, which knows nothing of the series.
-fn proved(seed: u64, cases: usize, most: u64, count: &mut Count) {
-    let mut g = Generator(seed);
+fn proved(seed: u64, cases: usize, most: usize, count: &mut Count) {
+    let mut g = Random(seed);
     let work = Work { digits: 30, ..Work::default() };
     for _ in 0..cases {
-        let (equation, low, high) = PROVED[g.below(PROVED.len() as u64) as usize];
-        let value = g.thousandths(low, high);
-        let orders = [4 + g.below(most - 4) as usize, 4 + g.below(most - 4) as usize];
-        let methods = [g.method(), g.method()];
+        let (equation, low, high) = g.pick(&PROVED);
+        let value = thousandths(&mut g, low, high);
+        let orders = [4 + g.below(most - 4), 4 + g.below(most - 4)];
+        let methods = [method(&mut g), method(&mut g)];
         let oscillator = Oscillator::parse(equation).unwrap().set("eps", &value).unwrap();
         let Ok(truth) = oscillator.prove(&Evaluate::default(), &work) else { continue };
         let truth = truth.value;

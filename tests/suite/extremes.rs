@@ -4,7 +4,6 @@
 //!
 //! The truth has its own route: Gamma functions and arithmetic-geometric means of MPFR at a higher
 //! precision, recursions, quadrature. The small grids run in CI; the full ones are ignored.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 mod coefficients;
 mod functions;

@@ -1,6 +1,5 @@
 //! Formulas of the library `lindstedt`, one by one. They stand here, not beside the code: for unit
 //! tests the largest library would be compiled twice.
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 mod closed;
 mod coefficients;

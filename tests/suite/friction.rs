@@ -1,7 +1,5 @@
 //! Averaging between turning points: exact laws, and the equation integrated in time as the judge.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
-
 use lindstedt::averaging::{Averaging, Coefficient, RateTerm};
 use lindstedt::motion::End;
 use lindstedt::{Exact, Kind, Oscillator, Refusal, Simulate, Work};

@@ -1,7 +1,5 @@
 //! Homoclinic orbits to any order, from the equation as it is written to the series.
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
-
 use lindstedt::{Oscillator, Work};
 
 fn series(equation: &str, name: &str, order: usize) -> Vec<String> {

@@ -1,7 +1,5 @@
 //! Hopf points of equations as they are written, against the time domain.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
-
 use lindstedt::unstable::equation::{Expression, Function};
 use lindstedt::unstable::hopf::{Coefficient, HopfCycle};
 use lindstedt::unstable::simulate::{

@@ -1,6 +1,5 @@
 //! Stopping within an order: after every number of questions the result is a prefix of the whole
 //! one, and the questions within one order are many. Counted, not timed.
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 use lindstedt::unstable::algebra::Stop;
 use lindstedt::unstable::derivation::averaging::{Averaging, AveragingSettings, average};

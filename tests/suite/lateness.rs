@@ -1,8 +1,6 @@
 //! How much work engines do after they are asked to stop: processor time of the one thread that works and asks, so
 //! that what else the machine does has no part in it.
 #![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use lindstedt::evaluate::Language;
 use lindstedt::grid::Axis;
 use lindstedt::motion::End;

@@ -1,5 +1,4 @@
 //! Melnikov's method against the reference numbers of `tests/data/stick-slip`.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 mod closed_forms;
 mod cycle;

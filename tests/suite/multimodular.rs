@@ -1,6 +1,5 @@
 //! The route over many primes against what the program found before its kernels were rewritten: digests of
 //! omega^2 and of every x_n, by another reconstruction, other transforms and a proof modulo fresh primes.
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::equation::{Condition, Problem};

@@ -1,7 +1,5 @@
 //! The numeric tiers against closed forms and against each other.
 
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use lindstedt::unstable::algebra::{RationalAlgebra, Ring};
 use lindstedt::unstable::coeff::floats::Floats;
 use lindstedt::unstable::derivation::numeric::{Estimate, Tier, derive};
@@ -12,6 +10,7 @@ use lindstedt::unstable::series::Series;
 use lindstedt::{
     DerivationError, Exact, Quantity, unstable::derivation::Settings, unstable::problems,
 };
+use lindstedt_tests::Random;
 use rug::{Float, Rational};
 
 /// omega^power of the power law from T/2pi = (1 + delta)^(-1/2) M(u), M(u) = sum_m mu_m u^m,
@@ -190,34 +189,24 @@ fn refusals() {
     assert!(estimate(&perturbed(Expression::VELOCITY), 2, Tier::Doubles).is_err());
 }
 
-/// Knuth's linear congruential generator.
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: u64, high: u64) -> u64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (self.0 >> 33) % (high - low + 1)
-    }
-}
-
 /// Two results of one problem may differ by the sum of their stated errors, no more; for the power
 /// law at amplitude one the closed form joins in, without an error.
 fn random_combinations(count: usize, seed: u64) {
     let mut random = Random(seed);
+    let mut between = |low: usize, high: usize| low + random.below(high - low + 1);
     let mut compared = 0;
     for _ in 0..count {
-        let name = ["power-law", "power-law", "pendulum", "duffing"][random.between(0, 3) as usize];
+        let name = ["power-law", "power-law", "pendulum", "duffing"][between(0, 3)];
         let problem = problems::find(name).unwrap();
-        let order = random.between(0, 16) as usize;
+        let order = between(0, 16);
         let mut settings = Settings { order, ..Settings::default() };
         if name == "pendulum" {
-            let a = Rational::from((random.between(1, 30), 10));
+            let a = Rational::from((between(1, 30), 10));
             settings.parameters.insert("amplitude".to_owned(), Exact::Rational(a));
         }
-        let digits = random.between(3, 40) as u32;
-        let other = random.between(3, 40) as u32;
-        let harmonics = random.between(4, 160) as usize;
+        let digits = between(3, 40) as u32;
+        let other = between(3, 40) as u32;
+        let harmonics = between(4, 160);
         let tiers = [
             Tier::Collocation { digits },
             Tier::Collocation { digits: other },

@@ -1,7 +1,5 @@
 //! First-order averaging of any law as numbers: exact rates, Bessel functions, the equation in time.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
-
 use lindstedt::averaging::{Coefficient, RateTerm};
 use lindstedt::evaluate::{Belt, FirstOrder};
 use lindstedt::motion::End;

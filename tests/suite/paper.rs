@@ -1,7 +1,5 @@
 //! The paper, re-read: every formula has its row, and what is said of the methods is true.
 
-#![allow(clippy::panic, reason = "a test that panics has failed")]
-
 mod rules;
 mod section_3;
 mod section_4;

@@ -1,8 +1,6 @@
 //! Section 2 of the paper: verdicts, corrections, mutations; the symbolic impact map against numbers
 //! computed outside this project.
 
-#![allow(clippy::panic, clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use lindstedt::unstable::coeff::quotient::Quotient;
 use lindstedt::unstable::impact::linearised::{ImpactMap, characteristic, coefficient, replace};
 use lindstedt::unstable::number::ball::Balls;

@@ -1,6 +1,5 @@
 //! Problem files: the examples, published coefficients, rewriting invariance, scaling, and every
 //! file that parses ends in an expansion or a refusal.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod fuzz;
 mod rewriting;

@@ -1,7 +1,5 @@
 //! Steady states at resonance against periodic orbits that are proved without any expansion, and against closed forms.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 mod free;
 mod numbers;
 mod orbits;

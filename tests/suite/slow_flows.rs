@@ -1,7 +1,5 @@
 //! Slow flows at resonance against formulas by hand, reference numbers and exact linear responses.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_expand::resonance::{SlowFlow, check_flow, resonant};

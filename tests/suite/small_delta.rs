@@ -1,6 +1,5 @@
 //! The small-delta method against routes that share no code with the driver: the closed-form
 //! period, the energy integral, the elliptic integral, published values.
-#![allow(clippy::unwrap_used)]
 
 use lindstedt::unstable::algebra::{FunctionAlgebra, PhaseAlgebra, Ring, Stop};
 use lindstedt::unstable::coeff::closed_forms::ClosedForms;

@@ -1,5 +1,4 @@
 //! One library in sixteen threads at once: no question disturbs another.
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 use lindstedt::motion::End;
 use lindstedt::{Derive, Evaluate, Oscillator, Route, Simulate, Stability, Threshold, Work};

@@ -1,7 +1,5 @@
 //! Traps of averaging at resonance: each is refused with a code and a reason of its own, by every question alike.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
-
 use lindstedt::respond::Respond;
 use lindstedt::verify::Verify;
 use lindstedt::{Error, Oscillator, Refusal, Work};

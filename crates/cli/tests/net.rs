@@ -7,7 +7,7 @@
 //!
 //! The LaTeX of all commands is also read token by token (`net/latex.rs`): what is known to be
 //! broken is listed in `KNOWN_DEFECTS`, and the list can only shrink.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 #[path = "net/commands.rs"]
 mod commands;

@@ -180,8 +180,6 @@ impl RationalAlgebra for PackedSums {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::PolynomialRing;
     use lindstedt_algebra::laws;

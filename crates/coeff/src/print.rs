@@ -519,15 +519,8 @@ mod tests {
         let names =
             ["mu_12", "R_in", "omega0", "eps", "S_1", "ln(eta)", "ln(a+b)", "a", "sin(alpha*T)"];
         let latex = [
-            r"\mu_{12}",
-            r"R_{\mathrm{in}}",
-            r"\omega_0",
-            r"\varepsilon",
-            "S_1",
-            r"\ln\eta",
-            r"\ln(a+b)",
-            "a",
-            r"\sin(\alpha\,T)",
+            r"\mu_{12}", r"R_{\mathrm{in}}", r"\omega_0", r"\varepsilon", "S_1", r"\ln\eta",
+            r"\ln(a+b)", "a", r"\sin(\alpha\,T)",
         ];
         assert_eq!(names.map(latex_name), latex);
     }

@@ -250,8 +250,6 @@ impl Print for PiField {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use lindstedt_algebra::laws;
 

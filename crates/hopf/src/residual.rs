@@ -154,8 +154,6 @@ impl<F: Field> Judge<'_, F> {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::series::expand;
     use crate::{PI, PiField, Term};

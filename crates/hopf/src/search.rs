@@ -373,8 +373,6 @@ fn halves(region: Box2, sizes: [f64; 2], balls: Balls) -> [Box2; 2] {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::residual::tests::wright;
 

@@ -1,5 +1,4 @@
 //! The series against collocation, and enclosures against exact numbers.
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 use crate::residual::tests::wright;
 use crate::{DelayEquation, Factor, HopfCycle, HopfError, HopfSettings, Term, cycle};

@@ -121,8 +121,6 @@ fn argument(z: &Complex) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::residual::tests::wright;
     use crate::search::points;

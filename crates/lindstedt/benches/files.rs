@@ -19,12 +19,7 @@ macro_rules! examples {
 }
 
 const FILES: [&str; 6] = examples!(
-    "delayed-duffing",
-    "helmholtz-duffing",
-    "pendulum",
-    "rayleigh",
-    "stick-slip",
-    "vibro-impact"
+    "delayed-duffing", "helmholtz-duffing", "pendulum", "rayleigh", "stick-slip", "vibro-impact"
 );
 
 /// Two wells with a force of degree 5: the orbit is integrated.

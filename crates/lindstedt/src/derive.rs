@@ -148,8 +148,7 @@ impl Oscillator {
         let value = value.with_numbers(work.printed_digits(), &self.problem().small);
         let tier = value.tier.name();
         let entering = self.entering_coefficients();
-        let at = entering.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(value.order), tier, start);
+        let header = self.header(&entering, Some(value.order), tier, start);
         let mut remarks = self.remarks().to_vec();
         remarks.extend(self.idle(|name| entering.contains_key(name)));
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
@@ -195,7 +194,6 @@ impl Oscillator {
         let checked = value.checked_orders == value.order;
         let stopped = value.order < order || !checked;
         let standing = self.standing(stopped, value.order, checked, &mut remarks);
-        let at = at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
         let tier = if value.exact { "exact" } else { "certified" };
         let header = self.header(at, Some(value.order), tier, start);
         Ok(Answer { header, value, standing, remarks })
@@ -331,11 +329,6 @@ impl Oscillator {
         let list = missing.join(", ");
         let text = || Remark(format!("asked for in the file, but not in this result: {list}"));
         (!missing.is_empty()).then(text)
-    }
-
-    /// The values that were set, as text.
-    pub(crate) fn given_text(&self) -> Vec<(String, String)> {
-        self.given().iter().map(|(name, value)| (name.clone(), value.to_string())).collect()
     }
 
     /// The values that the coefficients depend on.

@@ -165,7 +165,6 @@ impl Oscillator {
         let checked = cycle.checked_orders.is_some();
         let standing = self.standing(done < order || !checked, done, checked, &mut remarks);
         let at = values.into_iter().filter(|(other, _)| other != name);
-        let at = at.map(|(name, value)| (name, value.to_string())).collect();
         let tier = if cycle.exact { "exact" } else { "certified" };
         let header = self.header(at, Some(done), tier, start);
         let problem = self.problem().clone();

@@ -2,7 +2,7 @@
 
 use crate::answer::{Header, SCHEMA};
 use crate::refusal::Refused;
-use crate::{Error, Exact, Remark, classification};
+use crate::{DerivationError, Error, Exact, Remark, classification};
 use lindstedt_equation::classify::Classification;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
@@ -427,10 +427,15 @@ impl Oscillator {
         Err(Refused::usage("no-value-set", message, hint).into())
     }
 
+    /// That a parameter has no value.
+    pub(crate) fn unset(&self, name: impl Into<String>) -> Error {
+        DerivationError::Unset { problem: self.problem.name.to_string(), name: name.into() }.into()
+    }
+
     /// The header of an answer: the values are those that enter.
     pub(crate) fn header(
         &self,
-        at: Vec<(String, String)>,
+        at: impl IntoIterator<Item = (impl ToString, impl ToString)>,
         order: Option<usize>,
         tier: &'static str,
         start: Instant,
@@ -439,7 +444,7 @@ impl Oscillator {
             schema: SCHEMA,
             problem: self.problem.name.to_string(),
             equation: self.to_string(),
-            at,
+            at: at.into_iter().map(|(name, value)| (name.to_string(), value.to_string())).collect(),
             units: self.problem_file().units.clone(),
             order,
             tier,

@@ -125,9 +125,13 @@ pub struct Refused {
 }
 
 impl Refused {
+    fn new(kind: Kind, code: &'static str, message: String, hint: String) -> Self {
+        Self { code, kind, message, hint }
+    }
+
     /// A question that makes no sense as it is put.
     pub fn usage(code: &'static str, message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self { code, kind: Kind::Usage, message: message.into(), hint: hint.into() }
+        Self::new(Kind::Usage, code, message.into(), hint.into())
     }
 
     /// No such value.
@@ -136,7 +140,7 @@ impl Refused {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) -> Self {
-        Self { code, kind: Kind::NoAnswer, message: message.into(), hint: hint.into() }
+        Self::new(Kind::NoAnswer, code, message.into(), hint.into())
     }
 
     /// Not decided.
@@ -145,17 +149,12 @@ impl Refused {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) -> Self {
-        Self { code, kind: Kind::Undecided, message: message.into(), hint: hint.into() }
+        Self::new(Kind::Undecided, code, message.into(), hint.into())
     }
 
     /// Stopped before anything was finished.
     pub fn stopped(message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self {
-            code: "interrupted",
-            kind: Kind::Stopped,
-            message: message.into(),
-            hint: hint.into(),
-        }
+        Self::new(Kind::Stopped, "interrupted", message.into(), hint.into())
     }
 }
 

@@ -162,9 +162,8 @@ impl Oscillator {
         let checked = value.checked_orders.is_some();
         let stopped = value.order < order || !checked;
         let standing = self.standing(stopped, value.order, checked, &mut remarks);
-        let at = value.system.bound.iter().map(|(name, q)| (name.clone(), q.to_string()));
         let tier = if value.enclosed.is_some() { "certified" } else { "exact" };
-        let header = self.header(at.collect(), Some(value.order), tier, start);
+        let header = self.header(&value.system.bound, Some(value.order), tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
 
@@ -224,7 +223,7 @@ impl Oscillator {
         let done = value.branches.iter().map(SoughtBranch::order).min().unwrap_or(0);
         let checked = value.branches.iter().all(|branch| branch.checked_orders.is_some());
         let standing = self.standing(done < order || !checked, done, checked, &mut remarks);
-        let header = self.header(self.given_text(), Some(done), "exact", start);
+        let header = self.header(self.given(), Some(done), "exact", start);
         Ok(Answer { header, value, standing, remarks })
     }
 
@@ -264,7 +263,7 @@ impl Oscillator {
         let stopped = value.order < order || !checked;
         let standing = self.standing(stopped, value.order, checked, &mut remarks);
         let tier = if value.enclosed.is_some() { "certified" } else { "exact" };
-        let header = self.header(self.given_text(), Some(value.order), tier, start);
+        let header = self.header(self.given(), Some(value.order), tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
 }

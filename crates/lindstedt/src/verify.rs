@@ -181,8 +181,7 @@ impl Oscillator {
             .into(),
             error => self.refusal(error),
         })?;
-        let at = self.given().iter().map(|(name, value)| (name.clone(), value.to_string()));
-        let header = self.header(at.collect(), Some(question.order), "time domain", start);
+        let header = self.header(self.given(), Some(question.order), "time domain", start);
         let standing = match found.verdict {
             Verdict::Agrees => Standing::Complete,
             Verdict::Disagrees => Standing::NoAnswer,
@@ -217,7 +216,7 @@ impl Oscillator {
         let start = Instant::now();
         question.check_small()?;
         let value = self.against_time(derivation, question, work)?;
-        let header = self.header(Vec::new(), Some(derivation.order), "time domain", start);
+        let header = self.header([("", ""); 0], Some(derivation.order), "time domain", start);
         let remarks = self.remarks().to_vec();
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }

@@ -3,47 +3,9 @@
 //! gamma = G cosh(z)/(2z), z = pi omega/(2 sqrt a), G as in [`crate::StickSlip::g`]. Why
 //! 1 - |v*|/V is not formed as it stands: `docs/src/melnikov.md`.
 
-use crate::MelnikovError;
 use crate::hyperbolic::FRAC_PI_2_LOW;
+use crate::{FastPoint, MelnikovError};
 use std::f64::consts::{FRAC_PI_2, LN_2};
-
-/// The parameters in f64; names as in [`crate::StickSlip`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FastPoint {
-    /// a > 0.
-    pub a: f64,
-    /// b > 0.
-    pub b: f64,
-    /// T0.
-    pub dry: f64,
-    /// alpha.
-    pub alpha: f64,
-    /// beta.
-    pub beta: f64,
-    /// omega > 0.
-    pub omega: f64,
-    /// v*.
-    pub belt_speed: f64,
-}
-
-/// A parameter to sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
-    /// a.
-    A,
-    /// b.
-    B,
-    /// T0.
-    Dry,
-    /// alpha.
-    Alpha,
-    /// beta.
-    Beta,
-    /// omega.
-    Omega,
-    /// v*.
-    BeltSpeed,
-}
 
 /// A threshold in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -368,22 +330,6 @@ impl FastPoint {
     pub(crate) fn is_moderate(&self) -> bool {
         let others = [self.dry, self.alpha, self.beta, self.belt_speed];
         is_near_one(self.a) && is_near_one(self.b) && others.into_iter().all(is_moderate)
-    }
-
-    /// The point with one parameter changed.
-    #[must_use]
-    #[inline]
-    pub fn with(mut self, axis: Axis, value: f64) -> Self {
-        match axis {
-            Axis::A => self.a = value,
-            Axis::B => self.b = value,
-            Axis::Dry => self.dry = value,
-            Axis::Alpha => self.alpha = value,
-            Axis::Beta => self.beta = value,
-            Axis::Omega => self.omega = value,
-            Axis::BeltSpeed => self.belt_speed = value,
-        }
-        self
     }
 }
 

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Harmonic {
     /// k >= 1.
-    pub order: u32,
+    pub number: u32,
     /// h.
     pub weight: Exact,
     /// The phase in radians.
@@ -50,7 +50,7 @@ impl Forcing {
     #[must_use]
     pub fn multiplied(omega: Exact, factor: Factor) -> Self {
         let (weight, phase) = (Exact::from(1), Exact::from(0));
-        Self::Harmonics { omega, harmonics: vec![Harmonic { order: 1, weight, phase, factor }] }
+        Self::Harmonics { omega, harmonics: vec![Harmonic { number: 1, weight, phase, factor }] }
     }
     /// No force.
     #[must_use]
@@ -87,7 +87,7 @@ impl Forcing {
         }
         Ok((up, down))
     }
-    /// Positive frequencies and orders.
+    /// Positive frequencies and numbers of harmonics.
     ///
     /// # Errors
     /// [`MelnikovError::NotPositive`].
@@ -96,7 +96,7 @@ impl Forcing {
             positive(omega, "omega")?;
             for harmonic in harmonics {
                 harmonic.factor.check()?;
-                if harmonic.order == 0 {
+                if harmonic.number == 0 {
                     return Err(MelnikovError::NotPositive { name: "harmonic" });
                 }
             }
@@ -128,7 +128,7 @@ impl ForcingWork {
         (omega, harmonics): (&Exact, &[Harmonic]),
     ) -> Option<Self> {
         let transform = |harmonic: &Harmonic| {
-            let frequency = balls.mul_i64(&omega.ball(balls), i64::from(harmonic.order));
+            let frequency = balls.mul_i64(&omega.ball(balls), i64::from(harmonic.number));
             let (c, s) = potential.transform(balls, &harmonic.factor, &frequency).ok_or(())?;
             // x and v change their signs on the mirror image.
             let turned = branch.sign() < 0 && harmonic.factor.parity() > 0;
@@ -157,7 +157,7 @@ impl ForcingWork {
             let odd = balls.neg(&balls.add(&balls.mul(&c, &sin), &balls.mul(&s, &cos)));
             let (even, odd) = (balls.mul(&weight, &even), balls.mul(&weight, &odd));
             let (along, across) =
-                terms.entry(harmonic.order).or_insert_with(|| (balls.zero(), balls.zero()));
+                terms.entry(harmonic.number).or_insert_with(|| (balls.zero(), balls.zero()));
             (*along, *across) = (balls.add(along, &even), balls.add(across, &odd));
         }
         Ok(Self { terms: terms.into_iter().map(|(k, (c, s))| (k, c, s)).collect() })

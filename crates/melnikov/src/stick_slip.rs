@@ -3,44 +3,12 @@
 
 use crate::error::positive;
 use crate::root::{enclose_root, sqrt_positive_part};
-use crate::{Factor, Forcing, Friction, MelnikovError, PolynomialFriction, Potential, System};
+use crate::{
+    Factor, Forcing, Friction, MelnikovError, PolynomialFriction, Potential, StickSlip, System,
+};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
-
-/// x'' = a x - b x^3 + eps (gamma cos(omega t) - T(x' - v*)),
-/// T(w) = T0 sgn w - alpha w + beta w^3. All dimensionless. The closed form of a [`System`], where it has one:
-/// [`StickSlip::of`]; the system of a closed form: [`StickSlip::system`].
-///
-/// ```
-/// use lindstedt_melnikov::{Forcing, Friction, PolynomialFriction, Potential, StickSlip, System};
-/// use lindstedt_number::{Exact, ball::Balls};
-///
-/// let friction = PolynomialFriction::cubic(Exact::from((3, 10)), &Exact::from((3, 10)), Exact::from((3, 10)));
-/// let well = Potential::DoubleWell { a: Exact::from(1), b: Exact::from(1) };
-/// let forcing = Forcing::single(Exact::from(2));
-/// let system = System::new(well, Friction::Polynomial(friction), forcing, Exact::from((2, 5)))?;
-/// let closed = StickSlip::of(&system).and_then(|form| form.signed_threshold(Balls::new(60)));
-/// assert!(closed.is_some_and(|gamma| (gamma.midpoint().to_f64() - 0.6370713428481636).abs() < 1e-15));
-/// # Ok::<(), lindstedt_melnikov::MelnikovError>(())
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StickSlip {
-    /// a > 0.
-    pub a: Exact,
-    /// b > 0.
-    pub b: Exact,
-    /// T0, the dry friction.
-    pub dry: Exact,
-    /// alpha.
-    pub alpha: Exact,
-    /// beta.
-    pub beta: Exact,
-    /// omega > 0.
-    pub omega: Exact,
-    /// v*, the belt speed.
-    pub belt_speed: Exact,
-}
 
 impl StickSlip {
     /// The closed form of a system; nothing where it is another one.
@@ -50,7 +18,7 @@ impl StickSlip {
         let Friction::Polynomial(law) = system.friction() else { return None };
         let Forcing::Harmonics { omega, harmonics } = system.forcing() else { return None };
         let [only] = harmonics.as_slice() else { return None };
-        let plain = only.order == 1 && only.weight == Exact::from(1) && only.factor == Factor::ONE;
+        let plain = only.number == 1 && only.weight == Exact::from(1) && only.factor == Factor::ONE;
         if !(plain && system.damping().is_empty()) {
             return None;
         }

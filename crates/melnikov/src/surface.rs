@@ -4,10 +4,8 @@
 //! then some ten sums and products, one root and no branch, so that several columns are computed at a time.
 //! Rows with numbers far from 1, and values near 0, are computed point by point.
 
-use crate::MelnikovError;
-use crate::fast::{
-    Axis, FastPoint, LoopSpeed, Terms, forcing_factor, is_certain, is_moderate, is_near_one, value,
-};
+use crate::fast::{LoopSpeed, Terms, forcing_factor, is_certain, is_moderate, is_near_one, value};
+use crate::{Axis, FastPoint, MelnikovError};
 use rayon::prelude::*;
 
 /// The signed thresholds over a grid: `table[i * columns.len() + j]` at row i and column j.
@@ -147,8 +145,6 @@ impl<'a> Columns<'a> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     /// A surface is its points, bit by bit, over every pair of axes: near |v*| = V, far from 1, and where nothing is left.
@@ -170,11 +166,9 @@ mod tests {
             Axis::A | Axis::B | Axis::Omega => [&positive[..], far].concat(),
             _ => [&signed[..], far].concat(),
         };
-        let axes =
-            [Axis::A, Axis::B, Axis::Dry, Axis::Alpha, Axis::Beta, Axis::Omega, Axis::BeltSpeed];
         let (mut points, mut none) = (0, 0);
-        for row in axes {
-            for column in axes {
+        for row in Axis::ALL {
+            for column in Axis::ALL {
                 for far in [&[][..], &[1e-60, 1e60, 400.0, -1.0]] {
                     let (rows, columns) = (list(row, far), list(column, &[]));
                     for (along, down) in [(&columns, &rows), (&rows, &columns)] {

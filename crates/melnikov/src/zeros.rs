@@ -1,4 +1,4 @@
-//! Zeros of the threshold in any parameter, and a parameter changed by name.
+//! Zeros of the threshold in any parameter.
 
 use crate::root::enclose_root;
 use crate::{Axis, MelnikovError, StickSlip};
@@ -52,35 +52,6 @@ fn within(
 }
 
 impl StickSlip {
-    /// The same oscillator with one parameter changed.
-    #[must_use]
-    pub fn with(mut self, axis: Axis, value: Exact) -> Self {
-        match axis {
-            Axis::A => self.a = value,
-            Axis::B => self.b = value,
-            Axis::Dry => self.dry = value,
-            Axis::Alpha => self.alpha = value,
-            Axis::Beta => self.beta = value,
-            Axis::Omega => self.omega = value,
-            Axis::BeltSpeed => self.belt_speed = value,
-        }
-        self
-    }
-
-    /// The value of one parameter.
-    #[must_use]
-    pub fn get(&self, axis: Axis) -> &Exact {
-        match axis {
-            Axis::A => &self.a,
-            Axis::B => &self.b,
-            Axis::Dry => &self.dry,
-            Axis::Alpha => &self.alpha,
-            Axis::Beta => &self.beta,
-            Axis::Omega => &self.omega,
-            Axis::BeltSpeed => &self.belt_speed,
-        }
-    }
-
     /// Zeros of the signed threshold for `axis` in [low, high].
     ///
     /// omega has none: G does not depend on it, and the factor cosh(z)/(2z) is positive.

@@ -236,8 +236,6 @@ impl<P: Iterator<Item = PrimeFields>> Lifting<'_, P> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::derive;
     use crate::place::Place;

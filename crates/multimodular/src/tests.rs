@@ -1,5 +1,4 @@
 //! The proof finds what is broken; the route agrees with rational arithmetic for any polynomial equation.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 use crate::image::{Group, Image, Job};
 use crate::lift::Remaindering;

@@ -190,8 +190,6 @@ impl Scientific {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use rug::{Integer, Rational};
 

@@ -221,8 +221,6 @@ impl Mul for Interval {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     /// Every operation on points of the operands, exactly, lies in the result.

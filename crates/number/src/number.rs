@@ -260,8 +260,6 @@ pub fn rational(q: &Rational, digits: usize) -> Result<Number, NumberError> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     /// What is exact has no error; a decimal that was cut has one.

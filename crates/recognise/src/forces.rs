@@ -196,14 +196,14 @@ fn in_harmonics(group: &[&Term], unit: &Exact) -> Result<(Exact, Vec<Harmonic>),
     let omega = first.omega.times(&Rational::from((divisor.clone(), common)));
     let mut harmonics = Vec::new();
     for (term, k) in group.iter().zip(whole) {
-        let order = (k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
-        let order = order.ok_or(Why::NotHarmonic)?;
+        let number = (k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
+        let number = number.ok_or(Why::NotHarmonic)?;
         let size = term.size.ratio(unit).ok_or(Why::Irrational)?;
         // The phase of a force alone is the origin of time.
         let phase = if group.len() == 1 { Some(Exact::from(0)) } else { term.phase.clone() };
         let phase = phase.ok_or(Why::Irrational)?;
         harmonics.extend(term.factors.iter().map(|(factor, q)| Harmonic {
-            order,
+            number,
             weight: Exact::Rational(Rational::from(q * &size)),
             phase: phase.clone(),
             factor: factor.clone(),

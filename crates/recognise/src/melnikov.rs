@@ -174,9 +174,7 @@ impl MelnikovProblem {
                     found == Some(point.clone().with(*axis, Exact::Rational(q.clone())))
                 })
         };
-        let all =
-            [Axis::A, Axis::B, Axis::Dry, Axis::Alpha, Axis::Beta, Axis::Omega, Axis::BeltSpeed];
-        all.into_iter().find(renamed)
+        Axis::ALL.into_iter().find(renamed)
     }
 
     /// |s|.

@@ -186,7 +186,7 @@ impl Motion {
     ) -> Result<Ball, MelnikovError> {
         let work = |(omega, harmonics): (&Exact, &[Harmonic])| {
             ForcingWork::from_transforms(balls, harmonics, &|harmonic| {
-                let omega = omega.times(&Rational::from(harmonic.order));
+                let omega = omega.times(&Rational::from(harmonic.number));
                 let omega = omega.ball(Balls::new(self.work)).midpoint().clone();
                 let angle = |t: &Float| Float::with_val(self.work, t * &omega);
                 let value = |x: &Float, v: &Float| harmonic.factor.value(x) * v;

@@ -61,7 +61,7 @@ impl SplittingProblem {
         }
         let (omega, harmonics) = match &found.perturbation.forcing {
             Forcing::Harmonics { omega, harmonics } => {
-                (omega.to_f64(), harmonics.iter().map(|h| h.order).max().unwrap_or(1))
+                (omega.to_f64(), harmonics.iter().map(|h| h.number).max().unwrap_or(1))
             }
             _ => return Err(Refusal::NoPeriod),
         };

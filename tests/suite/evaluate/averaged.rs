@@ -178,7 +178,7 @@ fn characteristic_root([a, b, c, d, delay]: [f64; 5], eps: f64) -> Complex {
 /// fall less and less from order to order; and the estimates are not much too large.
 #[test]
 fn rates_of_random_equations_with_a_delay() {
-    let mut random = crate::estimates::Generator(6);
+    let mut random = lindstedt_tests::Random(6);
     let mut ratios = Vec::new();
     for _ in 0..100 {
         let mut twelfths = || random.below(25) as i64 - 12;

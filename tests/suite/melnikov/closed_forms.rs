@@ -1,11 +1,12 @@
 //! The paper's oscillator: thresholds, curves, zeros, cusps, M(t0).
 
-use super::support::{Random, assert_agrees, number, oracle, real, stick_slip};
+use super::support::{assert_agrees, decimals, number, oracle, real, stick_slip};
 use lindstedt::Exact;
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::number::digits::{certify, decimal};
 use lindstedt_melnikov::{Branch, Friction, PolynomialFriction, StickSlip, quadrature_dissipation};
 use lindstedt_paper::section_three;
+use lindstedt_tests::Random;
 use rug::Rational;
 use serde_json::Value;
 
@@ -144,7 +145,7 @@ fn dissipation_by_quadrature() {
     let mut random = Random(3);
     let balls = Balls::new(120);
     for round in 0..25 {
-        let mut q = |low, high| Exact::Rational(random.rational(low, high));
+        let mut q = |low, high| Exact::Rational(decimals(&mut random, low, high));
         let law = PolynomialFriction {
             dry: q(-1.0, 1.0),
             coefficients: (0..6).map(|_| q(-1.0, 1.0)).collect(),

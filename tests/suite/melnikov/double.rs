@@ -1,22 +1,14 @@
 //! The f64 path against the balls: random points, the extremes, the surface.
 
-use super::support::{Random, decimal, oracle};
+use super::support::{decimal, oracle};
 use lindstedt::Exact;
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::{Axis, FastPoint, MelnikovError, StickSlip, surface};
+use lindstedt_tests::Random;
 use rug::Float;
 
 fn exact(p: &FastPoint) -> StickSlip {
-    let real = |x| Exact::from_f64(x).unwrap();
-    StickSlip {
-        a: real(p.a),
-        b: real(p.b),
-        dry: real(p.dry),
-        alpha: real(p.alpha),
-        beta: real(p.beta),
-        omega: real(p.omega),
-        belt_speed: real(p.belt_speed),
-    }
+    p.map(|x| Exact::from_f64(*x).unwrap())
 }
 
 /// The largest relative error of `count` random points whose terms of G cancel at most fivefold.
@@ -30,7 +22,7 @@ fn worst_error(count: usize, seed: u64) -> f64 {
         let b = random.between(-3.0, 3.0).exp();
         let speed = a / (2.0 * b).sqrt();
         // Half of the points close to |v*| = V, down to the last bits.
-        let near = random.unit() < 0.5;
+        let near = random.between(0.0, 1.0) < 0.5;
         let distance = random.between(-36.0, 0.0).exp();
         let ratio = if near { 1.0 - distance } else { random.between(-1.6, 1.6) };
         let omega = random.between(-4.0, 6.0).exp();

@@ -1,8 +1,9 @@
 //! Thresholds of equations as they are written, with friction that depends on x and forces that multiply x, against
 //! integrals over the orbit by the trapezoidal rule; nothing is shared but the text of the equation.
 
-use super::support::Random;
+use super::support::decimals;
 use lindstedt::{Number, Oscillator, Refusal, Threshold, Work};
+use lindstedt_tests::Random;
 use std::f64::consts::PI;
 
 fn work() -> Work {
@@ -32,7 +33,7 @@ fn both(orbit: impl Fn(f64) -> [f64; 2] + Clone + 'static, sign: f64, centre: f6
 
 /// x'' = ... with its orbits, right or upper first.
 fn unperturbed(random: &mut Random, kind: u32) -> (String, Orbits) {
-    let mut q = |low, high| random.rational(low, high);
+    let mut q = |low, high| decimals(random, low, high);
     let (a, b, c) = (q(0.5, 2.0), q(0.5, 2.0), q(-1.0, 1.0));
     let (p, r, centre) = (a.to_f64(), b.to_f64(), c.to_f64());
     let y = format!("(x - ({c}))");
@@ -85,8 +86,9 @@ fn quadrature(orbit: &dyn Fn(f64) -> [f64; 2], g: &dyn Fn(f64, f64, f64) -> f64)
 
 /// x^i x'^j, or sin(k x) x'^j.
 fn friction(random: &mut Random, wave: bool) -> (String, Box<dyn Fn(f64, f64) -> f64>) {
-    let c = random.rational(0.2, 1.0);
-    let (i, j) = ((random.unit() * 4.0) as i32, 1 + (random.unit() * 3.0) as i32);
+    let c = decimals(random, 0.2, 1.0);
+    let (i, j) =
+        ((random.between(0.0, 1.0) * 4.0) as i32, 1 + (random.between(0.0, 1.0) * 3.0) as i32);
     let i = if wave { i.max(1) } else { i };
     let size = c.to_f64();
     if wave {
@@ -108,7 +110,7 @@ fn random_equations_against_quadrature() {
         let (first, f) = friction(&mut random, swings);
         let (second, g) = friction(&mut random, swings);
         let damping = move |x: f64, v: f64| f(x, v) - g(x, v) + 0.7 * v;
-        let mut size = || random.rational(0.3, 1.0);
+        let mut size = || decimals(&mut random, 0.3, 1.0);
         let (p, q, r) = (size(), size(), size());
         let factor = if swings { "sin(2*x)" } else { "x^2" };
         let equation = format!(

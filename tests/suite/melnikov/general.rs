@@ -1,12 +1,13 @@
 //! Polynomial friction of any degree, friction laws, several harmonics, other potentials.
 
-use super::support::{Random, assert_agrees, decimal, number, oracle, real};
+use super::support::{assert_agrees, decimal, decimals, number, oracle, real};
 use lindstedt::Exact;
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::{
     Branch, Class, Factor, Forcing, Friction, Harmonic, MelnikovError, Monomial,
     PolynomialFriction, Potential, System, polynomial_dissipation, quadrature_dissipation,
 };
+use lindstedt_tests::Random;
 use serde_json::Value;
 
 const BALLS: u32 = 200;
@@ -71,7 +72,7 @@ fn several_harmonics() {
     let balls = Balls::new(BALLS);
     for row in oracle("general.json")["multi_harmonic"]["table"].as_array().unwrap() {
         let harmonics = row["harmonics"].as_array().unwrap().iter().map(|h| Harmonic {
-            order: h["k"].as_u64().unwrap() as u32,
+            number: h["k"].as_u64().unwrap() as u32,
             weight: real(h, "g"),
             phase: real(h, "phase"),
             factor: Factor::ONE,
@@ -145,7 +146,7 @@ fn potentials_by_quadrature() {
     let balls = Balls::new(120);
     let mut random = Random(11);
     for round in 0..30 {
-        let mut q = |low, high| Exact::Rational(random.rational(low, high));
+        let mut q = |low, high| Exact::Rational(decimals(&mut random, low, high));
         let (a, b) = (q(0.3, 3.0), q(0.3, 3.0));
         let potential = match round % 5 {
             0 => Potential::DoubleWell { a, b },
@@ -221,7 +222,7 @@ fn incommensurate_and_parametric() {
     let other = system(Forcing::single(Exact::from(2))).threshold(balls, Branch::Positive).unwrap();
     let part = |omega, weight| {
         let phase = Exact::from(0);
-        (omega, vec![Harmonic { order: 1, weight, phase, factor: Factor::ONE }])
+        (omega, vec![Harmonic { number: 1, weight, phase, factor: Factor::ONE }])
     };
     let both = Forcing::Incommensurate(vec![
         part(omega(), Exact::from(1)),
@@ -259,7 +260,7 @@ fn described_orbits() {
     let balls = Balls::new(160);
     let mut random = Random(17);
     for round in 0..12 {
-        let mut q = |low, high| Exact::Rational(random.rational(low, high));
+        let mut q = |low, high| Exact::Rational(decimals(&mut random, low, high));
         let (a, b) = (q(0.3, 3.0), q(0.3, 3.0));
         let known = match round % 3 {
             0 => Potential::DoubleWell { a: a.clone(), b: b.clone() },

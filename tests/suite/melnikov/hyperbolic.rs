@@ -1,6 +1,6 @@
 //! The hyperbolic algebra: laws, exact integrals, J_{p,q} in balls and in f64.
 
-use super::support::{Random, assert_agrees, number, oracle};
+use super::support::{assert_agrees, decimals, number, oracle};
 use lindstedt::unstable::algebra::{Ring, laws};
 use lindstedt::unstable::number::ball::{Ball, Balls};
 use lindstedt_melnikov::hyperbolic::{
@@ -8,6 +8,7 @@ use lindstedt_melnikov::hyperbolic::{
     line_fourier_real, line_integral, line_integral_real,
 };
 use lindstedt_melnikov::quadrature::{Strip, trapezoid};
+use lindstedt_tests::Random;
 use rug::Rational;
 
 const BALLS: u32 = 200;
@@ -104,9 +105,9 @@ fn fourier_integrals_by_quadrature() {
     let balls = Balls::new(140);
     let mut random = Random(1);
     for round in 0..40 {
-        let p = 1 + (random.unit() * 8.0) as u32;
-        let q = (random.unit() * 24.0) as u32;
-        let w = random.rational(-3.0, 3.0);
+        let p = 1 + (random.between(0.0, 1.0) * 8.0) as u32;
+        let q = (random.between(0.0, 1.0) * 24.0) as u32;
+        let w = decimals(&mut random, -3.0, 3.0);
         let ball = balls.from_rational(&w);
         let reference = by_quadrature(balls, p, q, &w);
         let what = format!("round {round}: J_({p}, {q})({w})");

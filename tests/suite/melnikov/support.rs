@@ -3,7 +3,8 @@
 use lindstedt::Exact;
 use lindstedt::unstable::number::ball::Ball;
 use lindstedt_melnikov::StickSlip;
-use rug::{Integer, Rational, ops::Pow};
+use lindstedt_tests::Random;
+use rug::{Rational, ops::Pow};
 use serde_json::Value;
 
 /// A file of `tests/data/stick-slip`.
@@ -14,11 +15,7 @@ pub fn oracle(name: &str) -> Value {
 
 /// The exact value of a decimal.
 pub fn decimal(text: &str) -> Rational {
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let numerator: Integer = format!("{whole}{fraction}").parse().unwrap();
-    let shift = exponent.parse::<i32>().unwrap() - fraction.len() as i32;
-    Rational::from(numerator) * Rational::from(10).pow(shift)
+    Exact::parse(text).unwrap().as_rational().unwrap().clone()
 }
 
 /// A field of an object, as an exact parameter.
@@ -74,24 +71,7 @@ pub fn stick_slip(row: &Value) -> StickSlip {
     }
 }
 
-/// A reproducible stream of numbers in (0, 1) (SplitMix64).
-pub struct Random(pub u64);
-
-impl Random {
-    /// The next number.
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-    /// The next number in (low, high).
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-    /// The next number in (low, high) with three decimals, exactly.
-    pub fn rational(&mut self, low: f64, high: f64) -> Rational {
-        Rational::from(((self.between(low, high) * 1000.0).round() as i64, 1000))
-    }
+/// A number in (low, high) with three decimals, exactly.
+pub fn decimals(random: &mut Random, low: f64, high: f64) -> Rational {
+    Rational::from(((random.between(low, high) * 1000.0).round() as i64, 1000))
 }

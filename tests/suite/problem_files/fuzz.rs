@@ -103,13 +103,7 @@ fn equation() -> impl Strategy<Value = String> {
     });
     let linear = prop::sample::select(
         &[
-            "x'' + x",
-            "x'' + x",
-            "x'' + x",
-            "2*x'' + 8*x",
-            "x'' + 2*x",
-            "x''",
-            "x + k*x''",
+            "x'' + x", "x'' + x", "x'' + x", "2*x'' + 8*x", "x'' + 2*x", "x''", "x + k*x''",
             "x'' - x",
         ][..],
     );

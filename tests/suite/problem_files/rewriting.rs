@@ -1,20 +1,7 @@
 //! The result does not depend on how an equation was typed.
 
 use lindstedt::{Derivation, Oscillator, Work};
-
-/// A generator of small numbers (Numerical Recipes' constants); the seed is in the failure text.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % n
-    }
-    fn toss(&mut self) -> bool {
-        self.below(2) == 0
-    }
-}
+use lindstedt_tests::Random;
 
 /// numerator/denominator eps^order x^x x'^velocity.
 #[derive(Clone, Copy)]
@@ -41,16 +28,16 @@ const EQUATIONS: [&[Term]; 4] = [
     &[term((1, 1), 0, 1, 0), term((1, 2), 1, 1, 2), term((-3, 1), 1, 3, 0)],
 ];
 
-fn join(parts: &[String], dice: &mut Dice) -> String {
+fn join(parts: &[String], dice: &mut Random) -> String {
     let mut parts = parts.to_vec();
     for i in (1..parts.len()).rev() {
         parts.swap(i, dice.below(i + 1));
     }
-    parts.join(if dice.toss() { "*" } else { " * " })
+    parts.join(if dice.once_in(2) { "*" } else { " * " })
 }
 
 /// base^n in one of its ways.
-fn power(base: &str, n: u32, dice: &mut Dice) -> Vec<String> {
+fn power(base: &str, n: u32, dice: &mut Random) -> Vec<String> {
     match (n, dice.below(4)) {
         (0, _) => Vec::new(),
         (1, _) => vec![base.to_owned()],
@@ -61,7 +48,7 @@ fn power(base: &str, n: u32, dice: &mut Dice) -> Vec<String> {
     }
 }
 
-fn number(n: i64, d: i64, dice: &mut Dice) -> String {
+fn number(n: i64, d: i64, dice: &mut Random) -> String {
     match dice.below(4) {
         0 => format!("({n}/{d})"),
         1 => format!("({}/{})", 3 * n, 3 * d),
@@ -71,7 +58,7 @@ fn number(n: i64, d: i64, dice: &mut Dice) -> String {
 }
 
 /// A term, with the factor eps^order unless it is taken out, scaled.
-fn written(t: Term, scale: (i64, i64), with_order: bool, dice: &mut Dice) -> String {
+fn written(t: Term, scale: (i64, i64), with_order: bool, dice: &mut Random) -> String {
     let mut parts = vec![number(t.q.0 * scale.0, t.q.1 * scale.1, dice)];
     if with_order {
         parts.extend(power("eps", t.order, dice));
@@ -82,14 +69,14 @@ fn written(t: Term, scale: (i64, i64), with_order: bool, dice: &mut Dice) -> Str
 }
 
 /// One way to write an equation.
-fn rewrite(terms: &[Term], dice: &mut Dice) -> String {
+fn rewrite(terms: &[Term], dice: &mut Random) -> String {
     let scale = [(1, 1), (2, 1), (-3, 1), (1, 2), (5, 7)][dice.below(5)];
-    let inner = dice.toss();
+    let inner = dice.once_in(2);
     // Scaled inside every term, or around the whole.
     let inside = if inner { scale } else { (1, 1) };
     let mut list: Vec<String> = vec![format!("({}/{}) x''", inside.0, inside.1)];
     let (first, rest): (Vec<Term>, Vec<Term>) =
-        terms.iter().partition(|t| t.order == 1 && dice.toss());
+        terms.iter().partition(|t| t.order == 1 && dice.once_in(2));
     for t in rest {
         if dice.below(4) == 0 {
             // In two halves.
@@ -104,7 +91,7 @@ fn rewrite(terms: &[Term], dice: &mut Dice) -> String {
         let factored: Vec<String> =
             first.into_iter().map(|t| written(t, inside, false, dice)).collect();
         let sum = factored.join(" + ");
-        list.push(if dice.toss() { format!("eps*({sum})") } else { format!("({sum}) eps") });
+        list.push(if dice.once_in(2) { format!("eps*({sum})") } else { format!("({sum}) eps") });
     }
     if dice.below(3) == 0 {
         list.push("x^3*x'".into());
@@ -140,7 +127,7 @@ fn same(a: &Derivation, b: &Derivation, text: &str) {
 
 #[test]
 fn two_hundred_rewritings_give_identical_results() {
-    let mut dice = Dice(20_240_229);
+    let mut dice = Random(20_240_229);
     let mut texts = std::collections::BTreeSet::new();
     for terms in EQUATIONS {
         let plain: Vec<String> = terms

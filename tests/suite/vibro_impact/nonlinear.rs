@@ -3,7 +3,7 @@
 //! The Taylor integrator knows neither: it takes the equation, the wall, and the periodic orbit as
 //! history, starts with a perturbed velocity, and reports the impacts.
 
-use super::support::{ORBITS, Random, parameters};
+use super::support::{ORBITS, parameters};
 use lindstedt::unstable::equation::Expression;
 use lindstedt::unstable::equation::Function::{Cos, Exp, Sin};
 use lindstedt_algebra::Stop;
@@ -17,6 +17,7 @@ use lindstedt_impact::parameters::Parameters;
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow};
 use lindstedt_impact::zeros::{exact_verdict, multipliers};
 use lindstedt_simulate::{Doubles, EventKind, Integrator, Model, Report, Settings};
+use lindstedt_tests::Random;
 use rug::Float;
 use std::ops::ControlFlow;
 
@@ -45,8 +46,8 @@ fn prediction(p: &Parameters<f64>, orbit: &Orbit<f64>) -> Option<Verdict> {
 }
 
 fn examine(index: usize, random: &mut Random, with_velocity: bool) -> Option<Point> {
-    let a = random.thousandth(-300, 300);
-    let b = if with_velocity { random.thousandth(-300, 300) } else { rug::Rational::new() };
+    let a = random.thousandths(-300, 300);
+    let b = if with_velocity { random.thousandths(-300, 300) } else { rug::Rational::new() };
     let label = format!("{} A {:.3} B {:.3}", ORBITS[index].0, a.to_f64(), b.to_f64());
     let p = parameters(index, [a, b]).nearest();
     let orbit = orbit(&p).unwrap();
@@ -206,7 +207,7 @@ fn simulation_sides_with_the_characteristic_function_at_50_points() {
 fn return_map_of_plastic_impacts_is_that_of_the_simulation() {
     let mut random = Random(7);
     for _ in 0..4 {
-        let [a, b] = [random.thousandth(-100, 100), random.thousandth(20, 100)];
+        let [a, b] = [random.thousandths(-100, 100), random.thousandths(20, 100)];
         let mut p = parameters(0, [a, b]).nearest();
         p.restitution = 0.0;
         let orbit = orbit(&p).unwrap();

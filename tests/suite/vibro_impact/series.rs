@@ -1,7 +1,6 @@
 //! The driver's averaged rates against the recursion for the characteristic root, and the partial
 //! sums against the root itself.
 
-use super::support::Random;
 use lindstedt::unstable::derivation::averaging::{
     Averaging, AveragingSettings, Coefficient, RateTerm, average,
 };
@@ -9,6 +8,7 @@ use lindstedt::{Exact, unstable::problems};
 use lindstedt_impact::flow::{characteristic_root, rates};
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_number::real::Certified;
+use lindstedt_tests::Random;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ struct Case {
 impl Case {
     fn random(random: &mut Random) -> Self {
         let mut values = [(400, 2000), (300, 4000), (0, 300), (-300, 300), (-300, 300)]
-            .map(|(low, high)| random.thousandth(low, high));
+            .map(|(low, high)| random.thousandths(low, high));
         // No resonance with the force.
         values[1] += Rational::from((1, 7919));
         Self { values, periods: 1 + (random.0 % 3) as u32 }

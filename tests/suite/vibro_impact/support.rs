@@ -36,22 +36,3 @@ pub fn parameters(index: usize, gains: [Rational; 2]) -> ExactParameters {
         branch,
     }
 }
-
-/// SplitMix64: the same numbers everywhere.
-pub struct Random(pub u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A multiple of 1/1000 in [low/1000, high/1000].
-    pub fn thousandth(&mut self, low: i64, high: i64) -> Rational {
-        let width = (high - low + 1) as u64;
-        Rational::from((low + (self.next() % width) as i64, 1000))
-    }
-}

@@ -1,5 +1,4 @@
 //! `lindstedt derive` with a free amplitude: formulas, numbers, warnings, refusals.
-#![allow(clippy::unwrap_used)]
 
 use crate::program;
 use serde_json::Value;

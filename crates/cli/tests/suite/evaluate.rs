@@ -1,6 +1,5 @@
 //! `lindstedt evaluate`: the contract's keys, the numbers of the issue, tables, figures, code,
 //! refusals.
-#![allow(clippy::unwrap_used)]
 
 use crate::program::{self, Folder, example};
 use serde_json::Value;
@@ -93,34 +92,10 @@ fn solution_as_table_figure_and_code() {
 }
 
 #[test]
-fn every_format_and_every_refusal() {
+fn every_format() {
     for format in ["text", "latex", "markdown"] {
         let output = run(&["duffing", "--order", "8", "--times", "0..1:3", "--format", format]);
         assert!(output.status.success() && !output.stdout.is_empty());
-    }
-    let cases: [(&[&str], i32); 17] = [
-        (&["power-law", "--set", "n=-1/2", "--resum", "uniform"], 3),
-        (&["power-law", "--set", "n=-1"], 3),
-        (&["pendulum", "--resum", "uniform"], 3),
-        (&["pendulum", "--set", "amplitude=pi"], 3),
-        (&["duffing", "--set", "eps=-1"], 3),
-        (&["power-law", "--order", "1", "--resum", "pade"], 3),
-        (&["duffing", "--set", "x=1"], 2),
-        (&["duffing", "--times", "0..1"], 2),
-        (&["duffing", "--plot", "x.png"], 2),
-        (&["nothing"], 2),
-        (&["stick-slip"], 3),
-        (&["duffing", "--start", "1,0"], 2),
-        (&["van-der-pol", "--normalisation", "free", "--times", "0..1:2"], 2),
-        (&["van-der-pol", "--normalisation", "free", "--start", "-1,0"], 2),
-        (&["van-der-pol", "--normalisation", "free", "--resum", "pade"], 2),
-        (&["van-der-pol", "--normalisation", "free", "--code", "rust"], 2),
-        (&["power-law", "--normalisation", "free"], 3),
-    ];
-    for (arguments, code) in cases {
-        let output = run(arguments);
-        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
-        assert!(!output.stderr.is_empty());
     }
 }
 
@@ -183,12 +158,8 @@ fn all_examples() {
         assert_eq!(found["solution"]["values"].as_array().unwrap().len(), 2, "{name}");
     }
     // No value for the small parameter: named; no expansion: why.
-    let output = run(&[&example("duffing.toml")]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("eps has no value"));
-    let output = run(&[&example("stick-slip.toml")]);
-    assert_eq!(output.status.code(), Some(3));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("not smooth"));
+    program::refuses(&["evaluate", &example("duffing.toml")], 2, "eps has no value");
+    program::refuses(&["evaluate", &example("stick-slip.toml")], 3, "not smooth");
     let quartic = "name = 'a'\nequation = \"x'' + x + eps*x^3 = 0\"\n";
     let folder = Folder::new("initial");
     let moving = |v| format!("{quartic}[initial]\nx = '1/2'\nvelocity = '{v}'\n");
@@ -265,13 +236,8 @@ fn averaged_motions() {
     let values = found["solution"]["values"].as_array().unwrap();
     // Taylor integration with tolerance 1e-18 (mpmath 1.3.0, odefun).
     let expected = [
-        1.0,
-        -1.128305538500262,
-        0.6490678955318142,
-        0.3233492099058716,
-        -1.350797988542573,
-        1.936387410324992,
-        -1.868066746685336,
+        1.0, -1.128305538500262, 0.6490678955318142, 0.3233492099058716, -1.350797988542573,
+        1.936387410324992, -1.868066746685336,
     ];
     for (value, expected) in values.iter().zip(expected) {
         let x = &value["x"];

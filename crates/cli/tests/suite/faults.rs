@@ -3,6 +3,7 @@
 #![cfg(unix)]
 
 use crate::program::Folder;
+use lindstedt_tests::Random;
 use std::io::Read;
 use std::process::Stdio;
 use std::time::Instant;
@@ -10,23 +11,9 @@ use std::time::Instant;
 const FEW: u64 = 4;
 const MANY: u64 = 200;
 
-/// Numbers below `bound` without order.
-fn random(seed: u64, bound: u64) -> u64 {
-    let mixed = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    (mixed ^ (mixed >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9) % bound
-}
-
 const SWEEP: [&str; 10] = [
-    "simulate",
-    "stick-slip",
-    "--sweep",
-    "gamma=0.5..0.7:60",
-    "--skip",
-    "40",
-    "--periods",
-    "20",
-    "--plot",
-    "a.csv",
+    "simulate", "stick-slip", "--sweep", "gamma=0.5..0.7:60", "--skip", "40", "--periods", "20",
+    "--plot", "a.csv",
 ];
 
 /// What a folder may hold besides files without their final name.
@@ -47,7 +34,7 @@ fn killed(times: u64) {
     for round in 0..times {
         let mut child = folder.program(&kept).stdout(Stdio::null()).spawn().unwrap();
         // However busy the machine is, some begin and some end.
-        std::thread::sleep(alone.mul_f64(random(round, 120) as f64 / 100.0));
+        std::thread::sleep(alone.mul_f64(Random(round).between(0.0, 1.2)));
         let _ = child.kill();
         child.wait().unwrap();
         assert!(seen(&folder).iter().all(|name| ["a.csv", "r"].contains(&name.as_str())));
@@ -97,7 +84,7 @@ fn closed(times: u64) {
         let command = ["derive", "duffing", "--order", "16", "--format", "json"];
         let mut child = folder.program(&command).stdout(Stdio::piped()).spawn().unwrap();
         let mut pipe = child.stdout.take().unwrap();
-        let mut bytes = vec![0; random(round, 20_000) as usize];
+        let mut bytes = vec![0; Random(round).below(20_000)];
         let _ = pipe.read_exact(&mut bytes);
         drop(pipe);
         assert_eq!(child.wait().unwrap().code(), Some(0), "round {round}");

@@ -1,10 +1,10 @@
 //! Text of a problem file is data in every format: no command of TeX, no element of HTML, no markup of
 //! Markdown, nothing that steers a terminal.
 
-use super::fuzz::Generator;
 use crate::program::lindstedt;
 use lindstedt::{Oscillator, Refusal, Work};
 use lindstedt_report::{Format, Present, json};
+use lindstedt_tests::Random;
 
 /// What somebody might write to get in.
 const PAYLOADS: [&str; 16] = [
@@ -144,7 +144,7 @@ fn payloads_are_data() {
 
 #[test]
 fn any_text_is_data() {
-    let mut g = Generator(7);
+    let mut g = Random(7);
     for _ in 0..60 {
         let mut text = String::new();
         for _ in 0..=g.below(5) {

@@ -1,6 +1,5 @@
 //! Signals and limits: from inside an order, a step, a chart; the exit code says which it was.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::program::Folder;
 use std::process::{Child, Command, Stdio};
@@ -55,11 +54,7 @@ fn an_interruption_ends_the_work() {
         &["simulate", "pendulum", "--set", "amplitude=3", "--digits", "600", "--periods", "4000"],
         &["simulate", "power-law", "--set", "n=-0.99", "--digits", "40"],
         &[
-            "stability",
-            "vibro-impact",
-            "--sweep",
-            "A=-1/3..1/3:3001",
-            "--sweep",
+            "stability", "vibro-impact", "--sweep", "A=-1/3..1/3:3001", "--sweep",
             "B=-1/3..1/3:3001",
         ],
         &["evaluate", "power-law", "--order", "400", "--digits", "800"],

@@ -5,16 +5,8 @@ use crate::program::Folder;
 use std::fs;
 
 const SWEEP: [&str; 10] = [
-    "simulate",
-    "stick-slip",
-    "--sweep",
-    "gamma=0.5..0.7:6",
-    "--skip",
-    "2",
-    "--periods",
-    "3",
-    "--resume",
-    "r",
+    "simulate", "stick-slip", "--sweep", "gamma=0.5..0.7:6", "--skip", "2", "--periods", "3",
+    "--resume", "r",
 ];
 
 fn begun(name: &str) -> (Folder, String) {

@@ -1,7 +1,7 @@
 //! The same question to a built-in name, to its own file, and to the library with either: one answer, what a
 //! clock says apart.
 
-use crate::program::{self, Folder, refusal};
+use crate::program::{self, Folder, refuses};
 use lindstedt::evaluate::averaged::{AveragedMotion, Start};
 use lindstedt::evaluate::{Language, Times};
 use lindstedt::grid::Axis;
@@ -251,8 +251,7 @@ fn a_file_of_one_line() {
     answer["problem"] = Value::from("oscillator");
     assert_eq!(answer, asked("derive", "x'' + x + eps*beta*x^3 = 0", &options));
     folder.file(name, "equation = \"x'' + x + eps*y^3 = 0\"\n");
-    let (code, error) = refusal(&["derive", path]);
-    assert!(code == Some(2) && error.contains("y is the name of an unknown"), "{error}");
+    refuses(&["derive", path], 2, "y is the name of an unknown");
 }
 
 /// Pi is a number in every equation: a symbol where formulas are exact, its value in time, and refused with
@@ -274,8 +273,7 @@ fn pi_is_a_number() {
         (&["derive", equation], 3, "`derive --normalisation free` keeps pi as a symbol"),
         (&["derive", equation, "--set", "pi=3"], 2, "pi is a number"),
     ] {
-        let (code, error) = refusal(arguments);
-        assert!(code == Some(exit) && error.contains(words), "{error}");
+        refuses(arguments, exit, words);
     }
 }
 
@@ -293,8 +291,6 @@ fn an_equation_is_a_problem() {
     assert_eq!(set["series"]["frequency"][1]["exact"], "3/16");
     for name in ["y", "x_2", "w", "x1"] {
         let equation = format!("x'' + x + eps*{name}*x^2 = 0");
-        let (code, error) = refusal(&["derive", &equation]);
-        assert_eq!(code, Some(2), "{name}: {error}");
-        assert!(error.contains(&format!("{name} is the name of an unknown")), "{error}");
+        refuses(&["derive", &equation], 2, &format!("{name} is the name of an unknown"));
     }
 }

@@ -52,6 +52,13 @@ pub fn refusal(arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
 }
 
+/// That a line ends with an exit code and says some words.
+#[track_caller]
+pub fn refuses(arguments: &[&str], exit: i32, words: &str) {
+    let (code, said) = refusal(arguments);
+    assert!(code == Some(exit) && said.contains(words), "{arguments:?}: {code:?} {said}");
+}
+
 /// A number of the JSON.
 pub fn float(number: &Value) -> f64 {
     number["decimal"].as_str().unwrap().parse().unwrap()

@@ -1,5 +1,4 @@
 //! Proved orbits of whole problems: against closed forms, and all that are expected.
-#![allow(clippy::unwrap_used)]
 
 use lindstedt::evaluate::{Language, ProofVerdict, ProvedFamily, ProvedMember, ProvedOrbit, Times};
 use lindstedt::grid::Axis;
@@ -22,11 +21,7 @@ fn proved(equation: &str, values: &[(&str, &str)]) -> Result<ProvedOrbit, Error>
 
 /// A printed decimal, exactly.
 fn decimal(text: &str) -> Rational {
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let number: rug::Integer = format!("{whole}{fraction}").parse().unwrap();
-    let power = exponent.parse::<i32>().unwrap() - fraction.len() as i32;
-    Rational::from(number) * rug::ops::Pow::pow(Rational::from(10), power)
+    Exact::parse(text).unwrap().as_rational().unwrap().clone()
 }
 
 fn middle(number: &Option<Number>) -> Rational {

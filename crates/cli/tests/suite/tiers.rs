@@ -1,5 +1,4 @@
 //! `lindstedt derive --tier`: the numeric tiers beside the exact one.
-#![allow(clippy::unwrap_used)]
 
 use crate::program::{Folder, json, lindstedt};
 use rug::Float;
@@ -64,24 +63,6 @@ fn as_text() {
     // 1 - 2 ln 2.
     assert!(text.contains("-0.38629436111989061883"), "{text}");
     assert!(text.contains("Estimated numbers"), "{text}");
-}
-
-#[test]
-fn bad_combinations_are_refused() {
-    let cases: [(&[&str], i32, &str); 6] = [
-        (&["power-law", "--tier", "collocation", "--route", "energy"], 2, "route-and-tier"),
-        (&["power-law", "--tier", "nope"], 2, "usage"),
-        (&["power-law", "--tier", "fourier", "--harmonics", "3"], 2, "usage"),
-        (&["power-law", "--tier", "collocation", "--f64", "--digits", "20"], 2, "usage"),
-        (&["duffing", "--tier", "fourier", "--order", "1000000000"], 4, "too-large"),
-        (&["pendulum", "--tier", "fourier", "--set", "amplitude=4"], 3, "outside-domain"),
-    ];
-    for (arguments, exit, code) in cases {
-        let output = lindstedt(&[&["derive"], arguments, &["--format", "json"]].concat());
-        assert_eq!(output.status.code(), Some(exit), "{arguments:?}");
-        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert_eq!(value["error"]["code"], code, "{arguments:?}");
-    }
 }
 
 /// Files with forces that no exact ring has. T/2pi from the energy integral: for x + eps |x| x by

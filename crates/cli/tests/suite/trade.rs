@@ -1,5 +1,4 @@
 //! `lindstedt trade`: the rows, their order, their errors, the front, the files.
-#![allow(clippy::unwrap_used)]
 
 use crate::program::{self, Folder, lindstedt};
 use serde_json::Value;
@@ -55,12 +54,7 @@ fn every_true_error_is_below_the_stated_one() {
 #[test]
 fn rows_have_a_fixed_order() {
     let tiers = [
-        "exact",
-        "energy",
-        "collocation",
-        "collocation-f64",
-        "fourier",
-        "simulation-f64",
+        "exact", "energy", "collocation", "collocation-f64", "fourier", "simulation-f64",
         "simulation",
     ];
     let value = json("power-law", &["--digits", "20,10"]);
@@ -137,9 +131,7 @@ fn errors_are_proved() {
 /// Polynomial files are judged by a proof; Rayleigh's limit cycle has van der Pol's period.
 #[test]
 fn problem_files() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/");
-    let file = format!("{folder}rayleigh.toml");
-    let value = at_order(&file, "24", &["--set", "eps=1", "--for", "1e-6"]);
+    let value = at_order(&program::example("rayleigh"), "24", &["--set", "eps=1", "--for", "1e-6"]);
     assert_eq!(value["source"], "contraction proof");
     let reference = "6.6632868593231301896996820304823287068126463168838";
     assert!(reference.starts_with(&value["period"].as_str().unwrap()[..20]));
@@ -218,22 +210,4 @@ fn limits_keep_the_finished_rows() {
     let output = lindstedt(&[&start[..], &limits].concat());
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((output.status.code(), &value["error"]["code"]), (Some(4), &"limit-seconds".into()));
-}
-
-#[test]
-fn bad_input() {
-    let cases: [(&[&str], i32, &str); 6] = [
-        (&["trade", "nope"], 2, "unknown-problem"),
-        (&["trade", "vibro-impact"], 3, "no-reference"),
-        (&["trade", "van-der-pol", "--set", "eps"], 2, "set"),
-        (&["trade", "duffing", "--set", "eps=-1"], 3, "outside-domain"),
-        (&["trade", "duffing", "--orders", "x"], 2, "usage"),
-        (&["trade", "duffing", "--for", "0"], 2, "usage"),
-    ];
-    for (arguments, exit, code) in cases {
-        let output = lindstedt(&[arguments, &["--format", "json", "--quiet"]].concat());
-        assert_eq!(output.status.code(), Some(exit), "{arguments:?}");
-        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert_eq!(value["error"]["code"], code, "{arguments:?}");
-    }
 }

@@ -1,7 +1,5 @@
 //! Limit cycles of averaged equations and their Floquet exponents.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::averaging::{AveragingSettings, Cycles, average, print_series};
 use lindstedt_derivation::numeric::{self, Tier};

@@ -1,7 +1,5 @@
 //! Slow flows with delays against the characteristic roots of linear equations.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::resonance::{SlowFlow, slow_flow};
 use lindstedt_number::Exact;

@@ -1,7 +1,5 @@
 //! Slow flows whose frequencies are irrational: coefficients and their radii.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use crate::resonance::{by_hand, flow, named};
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::averaging::AveragingSettings;

@@ -1,7 +1,5 @@
 //! What Hamiltonian slow flows keep: energy and quadratic forms.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use crate::resonance::{Named, by_hand, flow, named};
 use lindstedt_phase::amplitudes::AmplitudeTerm;
 use rug::Rational;

@@ -1,7 +1,5 @@
 //! Nonlinear normal modes.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::DerivationError;
 use lindstedt_derivation::averaging::AveragingSettings;

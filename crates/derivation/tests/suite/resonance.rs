@@ -1,7 +1,5 @@
 //! Slow flows from equations as text: reference numbers, the ways to write a detuning, refusals by name.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::DerivationError;
 use lindstedt_derivation::averaging::AveragingSettings;

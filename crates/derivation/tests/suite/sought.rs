@@ -1,7 +1,5 @@
 //! The edges of the tongues of Mathieu's equation against its three-term recurrence.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use crate::delays::{C, add, mul, times};
 use lindstedt_algebra::Rationals;
 use lindstedt_coeff::print::Style;

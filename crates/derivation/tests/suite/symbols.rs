@@ -1,7 +1,5 @@
 //! Averaged formulas at numbers against the averages of the same equations over numbers.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use lindstedt_algebra::Ring;
 use lindstedt_coeff::amplitude::AmplitudePolynomial;
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};

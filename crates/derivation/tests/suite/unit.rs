@@ -1,7 +1,5 @@
 //! Frequencies that are rational multiples of one symbol or of one square root.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use crate::resonance::{Named, by_hand, flow, named, refused};
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::averaging::AveragingSettings;

@@ -142,8 +142,6 @@ impl FrequencyBound {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::{Binding, Request, amplitude_reaction, compile, expand};
     use lindstedt_algebra::Rationals;

@@ -462,8 +462,6 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)] // a test fails by panicking
-
     use super::*;
     use crate::compile::compile_system;
     use crate::resonance::resonant;

@@ -1,7 +1,5 @@
 //! The linear case against the general scheme.
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
-
 use super::{Affine, Resonant, SlowFlow, check_flow, resonant};
 use crate::{Binding, ExpandError, compile, compile_system};
 use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, Ring};

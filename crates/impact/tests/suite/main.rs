@@ -1,5 +1,5 @@
 //! Periodic impact orbits and their stability against independent numbers and methods.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 mod agreement;
 mod collocation;

@@ -15,13 +15,7 @@ use lindstedt_number::real::{Certified, Real};
 use serde_json::Value;
 
 const CASES: [&str; 8] = [
-    "O1_A",
-    "O2_k2_stabilised",
-    "O5_false_stable",
-    "O8_saddle",
-    "k5",
-    "near_grazing",
-    "plastic",
+    "O1_A", "O2_k2_stabilised", "O5_false_stable", "O8_saddle", "k5", "near_grazing", "plastic",
     "uncontrolled",
 ];
 

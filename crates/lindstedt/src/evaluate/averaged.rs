@@ -94,8 +94,7 @@ impl Oscillator {
             let words = "limit cycles are not listed: the coefficients are irrational";
             remarks.push(Remark(words.to_owned()));
         }
-        let at = value.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(value.order), "averaging", start);
+        let header = self.header(value.at.clone(), Some(value.order), "averaging", start);
         Ok(Answer { header, value, standing, remarks })
     }
 }

@@ -101,8 +101,7 @@ impl Oscillator {
         let (small, has_amplitude, order) = varying(&value);
         let varies = |name: &str| name == small || has_amplitude && name == AMPLITUDE;
         let at = setting.at.iter().filter(|(name, _)| !varies(name));
-        let at = at.map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(order), "resummation", start);
+        let header = self.header(at.cloned(), Some(order), "resummation", start);
         let remarks = self.remarks().to_vec();
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }
@@ -166,7 +165,7 @@ impl Oscillator {
     ) -> Result<Answer<PeriodicSolution>, Error> {
         let start = Instant::now();
         let solved = self.solved(question, harmonics, work)?;
-        let (order, at, tier) = (solved.order, solved.at(), solved.way.tier());
+        let (order, at, tier) = (solved.order, solved.at, solved.way.tier());
         let value = match solved.way {
             Way::Newton(fourier, frequency) => PeriodicSolution::new(fourier, frequency, "newton"),
             Way::Sum(path) => {
@@ -209,7 +208,8 @@ fn varying(frequency: &FrequencyFunction) -> (String, bool, usize) {
 
 /// A solution that harmonics can be taken of.
 pub(super) struct Solved {
-    at: Vec<(String, Exact)>,
+    /// The values that enter.
+    pub at: Vec<(String, Exact)>,
     /// The order of the expansion.
     pub order: usize,
     /// How it was found.
@@ -233,12 +233,5 @@ impl Way {
             Self::Newton(..) => "newton",
             Self::Sum(_) => "resummation",
         }
-    }
-}
-
-impl Solved {
-    /// The values that enter, as text.
-    pub fn at(&self) -> Vec<(String, String)> {
-        self.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect()
     }
 }

@@ -136,8 +136,7 @@ impl Oscillator {
             remarks.push(Remark(none.to_owned()));
             standing = Standing::Undecided;
         }
-        let at = value.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(value.order), "resummation", start);
+        let header = self.header(value.at.clone(), Some(value.order), "resummation", start);
         Ok(Answer { header, value, standing, remarks })
     }
 
@@ -164,7 +163,7 @@ impl Oscillator {
     ) -> Result<Answer<SolutionCode>, Error> {
         let start = Instant::now();
         let solved = self.solved(question, harmonics, work)?;
-        let (order, at, name) = (solved.order, solved.at(), &self.problem().name);
+        let (order, at, name) = (solved.order, solved.at, &self.problem().name);
         let tier = solved.way.tier();
         let value =
             match solved.way {

@@ -208,12 +208,7 @@ impl Oscillator {
         } else {
             Standing::Complete
         };
-        let at = values.into_iter().map(|(name, value)| (name, value.to_string())).collect();
-        Ok(Answer {
-            header: self.header(at, Some(1), "estimated", start),
-            value,
-            standing,
-            remarks,
-        })
+        let header = self.header(values, Some(1), "estimated", start);
+        Ok(Answer { header, value, standing, remarks })
     }
 }

@@ -211,7 +211,6 @@ impl Oscillator {
         let shared = |pair| found().flatten().all(|point| point.at().contains(pair));
         let at = first.iter().flat_map(|point| point.at());
         let at = at.filter(|pair| !swept(&pair.0) && shared(pair));
-        let at = at.map(|(name, value)| (name.clone(), value.to_string())).collect();
         let with = found().filter(|point| matches!(point, Ok(point) if point.has_value()));
         let (done, without) = (grid.done(), grid.done() - with.count());
         let mut remarks = self.remarks().to_vec();
@@ -226,7 +225,7 @@ impl Oscillator {
             Standing::Complete if undecided => Standing::Undecided,
             standing => standing,
         };
-        let header = self.header(at, first.map(SweptPoint::order), P::TIER, start);
+        let header = self.header(at.cloned(), first.map(SweptPoint::order), P::TIER, start);
         Ok(Answer { header, value: Swept { grid }, standing, remarks })
     }
 }

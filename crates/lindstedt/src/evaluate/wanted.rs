@@ -2,7 +2,7 @@
 
 use super::turn::TimeDomain;
 use crate::refusal::Refused;
-use crate::{DerivationError, Error, Exact, Oscillator};
+use crate::{Error, Exact, Oscillator};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression};
 use lindstedt_evaluation::setting::check_names;
@@ -135,9 +135,7 @@ impl Oscillator {
 
     fn unproved(&self, failure: Failure) -> Error {
         match failure {
-            Failure::NoValue(name) => {
-                DerivationError::Unset { problem: self.problem().name.to_string(), name }.into()
-            }
+            Failure::NoValue(name) => self.unset(name),
             other => other.into(),
         }
     }

@@ -4,6 +4,7 @@ mod answer;
 mod free;
 mod frequency;
 mod orbit;
+mod refusals;
 mod shown;
 mod subject;
 mod validity;

@@ -2,14 +2,17 @@
 
 use super::answer::{Estimate, Response};
 use super::frequency::{Varying, forcing_frequency, moving_frequency, resonant};
+use super::refusals::{
+    has_numbers, is_unit, is_unset, no_amplitude, no_frame, no_part, no_polynomial, no_resonance,
+    not_weak, not_whole, strong_force, uncoupled, whole,
+};
 use super::{ORDER, Respond, SEARCHES, STEPS, not_determined};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
 use crate::refusal::Refused;
-use crate::{DerivationError, Error, Exact, Oscillator, Remark, SlowFlow, Work};
-use lindstedt_derivation::resonance::ResonanceError;
+use crate::{Error, Exact, Oscillator, Remark, SlowFlow, Work};
 use lindstedt_equation::Expression;
-use lindstedt_evaluation::rotating::{FAMILY, NoFrame, Rotating, forced_part, rotating};
+use lindstedt_evaluation::rotating::{FAMILY, Rotating, forced_part, rotating};
 use lindstedt_evaluation::tongue::Tongues;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::interval::Interval;
@@ -183,7 +186,6 @@ impl<'a> Subject<'a> {
         let unset = names.zip(self.values([None, None])).find(|(name, value)| {
             value.is_none() && !self.swept.iter().flatten().any(|it| it == *name)
         });
-        let problem = self.oscillator.problem().name.to_string();
         let beside = self.slow.system.beside.as_ref();
         let swept = |(name, _): &(&String, Option<Value>)| {
             let names = self.slow.system.angle(name)?.0.parameters();
@@ -195,11 +197,10 @@ impl<'a> Subject<'a> {
             }
             // A detuning that follows from the frequency and the small parameter, which has no value.
             Some((name, _)) if beside.is_some_and(|it| it.symbol == *name) => {
-                let name = self.oscillator.problem().small.to_string();
-                Err(DerivationError::Unset { problem, name }.into())
+                Err(self.oscillator.unset(&*self.oscillator.problem().small))
             }
             Some((name, _)) if name == FAMILY => Err(no_amplitude("has no value")),
-            Some((name, _)) => Err(DerivationError::Unset { problem, name: name.clone() }.into()),
+            Some((name, _)) => Err(self.oscillator.unset(name)),
             None if self.amplitude.is_some_and(|a| !a.is_finite() || a <= 0.0) => {
                 let message = "the largest amplitude is a positive number";
                 Err(Refused::usage("box", message, "--box 2").into())
@@ -306,10 +307,9 @@ impl<'a> Subject<'a> {
     }
 
     /// The values that enter, for the header.
-    pub(super) fn shown_values(&self) -> Vec<(String, String)> {
+    pub(super) fn shown_values(&self) -> impl Iterator<Item = (String, Exact)> {
         let varies = |name: &String| self.swept.iter().flatten().any(|swept| swept == name);
-        let all = self.oscillator.all_values().into_iter();
-        all.filter(|(name, _)| !varies(name)).map(|(n, v)| (n, v.to_string())).collect()
+        self.oscillator.all_values().into_iter().filter(move |(name, _)| !varies(name))
     }
 
     /// Values of an axis at which all states are looked for: a list as it is, of a range some.
@@ -328,10 +328,7 @@ impl<'a> Subject<'a> {
     pub(super) fn samples(&self, axis: &Axis) -> Result<Vec<Exact>, Error> {
         let values = self.chosen(axis).into_iter();
         let Some(factor) = &self.factor else { return Ok(values.collect()) };
-        let unset = || DerivationError::Unset {
-            problem: self.oscillator.problem().name.to_string(),
-            name: self.oscillator.problem().small.to_string(),
-        };
+        let unset = || self.oscillator.unset(&*self.oscillator.problem().small);
         let small = self.small.as_ref().ok_or_else(unset)?;
         let detuning = |value: Exact| {
             let rate = Rational::from(value.as_rational()? / factor);
@@ -564,138 +561,4 @@ pub(super) fn doubles(values: &Values) -> Vec<f64> {
     let number =
         |value: &Option<Value>| value.as_ref().map_or(f64::NAN, |it| it.interval().middle());
     values.iter().map(number).collect()
-}
-
-/// A slow flow that was stopped at a lower order is that of other states.
-fn whole(slow: SlowFlow, order: usize) -> Result<SlowFlow, Error> {
-    if slow.order < order {
-        let message = format!("stopped at order {} of the slow flow of order {order}", slow.order);
-        return Err(Refused::stopped(message, "raise --limit-seconds or lower --order").into());
-    }
-    Ok(slow)
-}
-
-/// Whether an error says that this name has no value.
-fn is_unset(error: &Error, name: &str) -> bool {
-    use crate::Refusal;
-    error.code() == "no-value-set" && error.to_string().contains(name)
-}
-
-fn no_frame(why: NoFrame) -> Error {
-    let (message, hint) = match why {
-        NoFrame::NoForce => (
-            "without a force the phase of a steady state is free: the motions that lock are looked for of two unknowns",
-            "of one unknown `lindstedt evaluate` has the periodic motions; `derive --normalisation free` has the slow flow, `derive --mode` normal modes, `simulate` the motions",
-        ),
-        _ => (
-            "forces of different detunings act on the same amplitudes: these are steady in no frame, they beat",
-            "`lindstedt simulate` shows the motion, `derive --normalisation free` the slow flow",
-        ),
-    };
-    Refused::no_answer("no-response", message, hint).into()
-}
-
-/// Branches of less than the slow flow would be those of another one.
-fn not_whole() -> Error {
-    let message =
-        "a frequency is irrational, and coefficients of the slow flow cannot be told from zero";
-    let hint = "without --sweep: the states at one value, their number estimated; more --digits";
-    Refused::no_answer("no-rational-modes", message, hint).into()
-}
-
-/// Refuses a slow flow that depends on frequencies without a value.
-fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
-    let Some(name) = slow.system.open_frequency() else { return Ok(()) };
-    let problem = oscillator.problem().name.to_string();
-    Err(DerivationError::Unset { problem, name: name.clone() }.into())
-}
-
-/// Whether all frequencies are multiples of this name.
-fn is_unit(slow: &SlowFlow, name: &str) -> bool {
-    slow.system.unit.as_ref().is_some_and(|unit| unit.name == name)
-}
-
-fn no_amplitude(what: &str) -> Error {
-    let message = format!(
-        "energy is conserved: normal modes are families over their amplitude, which {what}"
-    );
-    Refused::usage("no-value-set", message, "--set amplitude=1, or --sweep amplitude=0.1..2").into()
-}
-
-fn uncoupled(slow: &SlowFlow, order: usize) -> Error {
-    if slow.system.forces.is_empty() {
-        let message = format!("up to order {order} no resonance ties the phases of the unknowns");
-        let hint = "`lindstedt derive --mode 1` has normal modes, `derive --normalisation free` the slow flow; a higher --order";
-        return Refused::no_answer("no-response", message, hint).into();
-    }
-    let message = format!("up to order {order} no resonance couples the force to an amplitude");
-    let square = slow.system.squares.first().filter(|_| slow.system.algebraic.is_none());
-    let hint = match square.filter(|_| !slow.system.is_exact()) {
-        Some(square) => at_root(&square.to_string()),
-        None => "a frequency nearer to a resonance (or the detuning as a parameter)".to_owned(),
-    };
-    Refused::no_answer("no-response", message, format!("{hint}, a higher --order")).into()
-}
-
-/// How a force beside an irrational frequency is written: no number is at its resonance.
-fn at_root(square: &str) -> String {
-    format!("its frequency as the root with a detuning: cos((sqrt({square}) + eps*sigma)*t)")
-}
-
-fn no_resonance(name: &str) -> Error {
-    let message = format!(
-        "no value of {name} lies around a resonance that couples the force to an amplitude"
-    );
-    let hint = "a range about a resonance, or the detuning as a parameter of its own";
-    Refused::no_answer("no-response", message, hint).into()
-}
-
-/// The code of a force of order one at a resonance.
-const RESONANT: &str = "resonance";
-/// Values of a frequency at which it is looked for.
-const PROBED: usize = 41;
-
-/// The refusal of a force of order one that a value of its frequency brings beside a resonance.
-fn strong_force(case: &Oscillator, axis: &Axis, work: &Work) -> Option<Error> {
-    use crate::Refusal;
-    let stride = axis.values.len().div_ceil(PROBED).max(1);
-    axis.values.iter().step_by(stride).find_map(|value| {
-        let found = case.clone().with(&axis.name, value.clone()).flow(1, work);
-        found.err().filter(|error| error.code() == RESONANT)
-    })
-}
-
-fn no_polynomial(symbol: &str, name: &str) -> Error {
-    let message = format!("the slow flow contains {symbol}: over {name} it is no polynomial");
-    let hint = format!("--set {name}=VALUE, and another parameter varies");
-    Refused::no_answer("no-response", message, hint).into()
-}
-
-fn no_part(name: &str) -> Error {
-    let message = format!("the slow flow does not depend on {name}");
-    Refused::no_answer("no-response", message, "a parameter of the equation varies").into()
-}
-
-/// The refusal of a problem that has no slow flow, with the verb that serves.
-fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
-    use crate::{Kind, Refusal};
-    let (kind, code, hint) = error.parts();
-    if kind != Kind::NoAnswer || code == RESONANT {
-        return error;
-    }
-    let problem = oscillator.problem();
-    let other = match problem.conditions.is_empty() {
-        true => "`lindstedt threshold` and `lindstedt simulate` take motions beside a saddle",
-        false => "`lindstedt evaluate` has the periods of strongly nonlinear motions",
-    };
-    if let Error::Derivation(DerivationError::Resonance(ResonanceError::NoRationalModes {
-        squares,
-    })) = &error
-        && !squares.contains(',')
-    {
-        return Refused { code, kind, message: error.to_string(), hint: at_root(squares) }.into();
-    }
-    let message = format!("no response from a slow flow: {error}");
-    let hint = if hint.is_empty() { other.to_owned() } else { format!("{hint}; {other}") };
-    Refused { code, kind, message, hint }.into()
 }

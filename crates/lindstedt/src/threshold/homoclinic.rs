@@ -106,7 +106,6 @@ impl Oscillator {
         let mut remarks = self.remarks().to_vec();
         let standing = self.standing(done < order, done, true, &mut remarks);
         let at = values.into_iter().filter(|(other, _)| other != name);
-        let at = at.map(|(name, value)| (name, value.to_string())).collect();
         let header = self.header(at, Some(done), "exact", start);
         Ok(Answer { header, value, standing, remarks })
     }

@@ -288,12 +288,11 @@ impl Oscillator {
         if !remarks.is_empty() {
             remarks.extend(value.remarks.iter().cloned());
         }
-        let at = self.all_values().into_iter().map(|(name, value)| (name, value.to_string()));
         let tier = match subject.found.class() {
             Class::Certified => "certified",
             Class::Estimated => "estimated",
         };
-        let header = self.header(at.collect(), None, tier, start);
+        let header = self.header(self.all_values(), None, tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
 }

@@ -88,7 +88,6 @@ impl Oscillator {
             validity,
         };
         let at = values.into_iter().filter(|(other, _)| other != name);
-        let at = at.map(|(name, value)| (name, value.to_string())).collect();
         let tier = match found.class() {
             Class::Certified => "certified",
             Class::Estimated => "estimated",

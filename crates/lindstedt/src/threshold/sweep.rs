@@ -3,7 +3,7 @@
 use super::subject::{Changes, Range, Subject};
 use crate::grid::{Axis, Grid, Part, check_room};
 use crate::{Error, Exact};
-use lindstedt_melnikov::{self as melnikov, Class, FastPoint, StickSlip, surface};
+use lindstedt_melnikov::{self as melnikov, Class, StickSlip, surface};
 use lindstedt_number::ball::Balls;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -147,7 +147,7 @@ fn doubles(subject: &Subject<'_>, swept: &[Range]) -> Result<Found, Error> {
     let Some((point, along)) = subject.point.as_ref().zip(first.known) else {
         return Ok(certify(subject, swept));
     };
-    let base = in_doubles(point);
+    let base = point.map(Exact::to_f64);
     let width = columns.len();
     // Of one curve the row is the value that the columns replace.
     let across = second.and_then(|range| range.known).unwrap_or(along);
@@ -175,18 +175,6 @@ fn doubles(subject: &Subject<'_>, swept: &[Range]) -> Result<Found, Error> {
     }
     let rows = second.map(|range| range.axis.clone());
     Ok(Found { grid: Grid { columns: first.axis.clone(), rows, points }, reasons })
-}
-
-fn in_doubles(point: &StickSlip) -> FastPoint {
-    FastPoint {
-        a: point.a.to_f64(),
-        b: point.b.to_f64(),
-        dry: point.dry.to_f64(),
-        alpha: point.alpha.to_f64(),
-        beta: point.beta.to_f64(),
-        omega: point.omega.to_f64(),
-        belt_speed: point.belt_speed.to_f64(),
-    }
 }
 
 /// The zeros and the cusps (|v*| = V) of every curve over v* in closed form.

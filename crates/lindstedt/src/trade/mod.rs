@@ -140,8 +140,7 @@ impl Oscillator {
         } else {
             Standing::Undecided
         };
-        let at = setting.at.iter().map(|(name, value)| (name.clone(), value.to_string()));
-        let header = self.header(at.collect(), None, "every tier", start);
+        let header = self.header(setting.at.clone(), None, "every tier", start);
         Ok(Answer { header, value, standing, remarks })
     }
 

@@ -3,9 +3,9 @@
 use super::sampled::{largest_gaps, sample_times, states};
 use super::{Comparison, Verify};
 use crate::{Error, Oscillator, Progress, SlowFlow};
+use lindstedt_derivation::all_values;
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::resonance::{Motion, slow_flow_undetuned};
-use lindstedt_derivation::{DerivationError, all_values};
 use lindstedt_equation::Expression;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
@@ -54,8 +54,7 @@ impl Resonant {
         parameters.remove("amplitude");
         let mentioned: Vec<String> = problem.equations().flat_map(|e| e.parameters()).collect();
         if let Some(name) = mentioned.iter().find(|name| !parameters.contains_key(*name)) {
-            let problem = problem.name.to_string();
-            return Err(DerivationError::Unset { problem, name: name.clone() }.into());
+            return Err(oscillator.unset(name));
         }
         let order = question.order;
         let asked = AveragingSettings { order, parameters, ..AveragingSettings::default() };

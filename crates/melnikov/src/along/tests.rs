@@ -1,8 +1,6 @@
 //! Integrals along the orbit against the trapezoidal rule over time, which converges geometrically for them; the orbits are
 //! written here once more.
 
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use crate::hyperbolic::line_fourier_ball;
 use crate::{
     Branch, Damping, Factor, Forcing, Friction, Harmonic, PolynomialFriction, Potential, System,
@@ -225,7 +223,7 @@ fn scan(
 fn phases_of_several_factors_are_not_lost() {
     let harmonic = |factor: Factor, weight: (i32, u32), phase: (i32, u32)| {
         let (weight, phase) = (Exact::from(weight), Exact::from(phase));
-        Harmonic { order: 1, weight, phase, factor }
+        Harmonic { number: 1, weight, phase, factor }
     };
     for potential in potentials() {
         let second = match potential {

@@ -1,8 +1,6 @@
 //! The homoclinic Bogdanov-Takens orbit and others, against published coefficients and against
 //! invariant manifolds.
 
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use super::{PerturbationTerm, Saddle};
 use crate::MelnikovError;
 use rug::{Float, Rational};

@@ -1,7 +1,5 @@
 //! The slope of the threshold against homoclinic tangencies found by following the manifolds.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use super::{Connection, Splitting};
 use crate::{Branch, StickSlip};
 use lindstedt_number::Exact;

@@ -75,8 +75,6 @@ impl RationalAlgebra for BallRing {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use rug::Float;
 

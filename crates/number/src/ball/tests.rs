@@ -1,8 +1,6 @@
 //! Containment: every operation against MPFR at four times the precision, at points inside and
 //! on the rim of the operand balls.
 
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use super::*;
 
 /// Knuth's 64-bit linear congruential generator: tests need no better one.

@@ -1,5 +1,3 @@
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use super::*;
 use lindstedt_number::Exact;
 use lindstedt_number::interval::Interval;

@@ -1,5 +1,5 @@
 //! Proved orbits against closed forms, Taylor integration and themselves.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test fails by panicking
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 mod classics;
 mod common;

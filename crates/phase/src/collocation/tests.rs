@@ -1,7 +1,5 @@
 //! Laws up to rounding, and solutions against closed forms.
 
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use super::*;
 use crate::lobachevsky_function::{Point, lobachevsky};
 use lindstedt_algebra::{Elementary, FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};

@@ -381,8 +381,6 @@ const PANELS: [Panel; 23] = [
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::super::log_cosine;
     use super::*;
     use lindstedt_number::ball::Ball;

@@ -1,7 +1,5 @@
 //! Reference values, functional equations, hard points.
 
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use super::*;
 use lindstedt_number::{NumberError, digits::certify};
 use rug::ops::Pow;

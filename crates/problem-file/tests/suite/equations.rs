@@ -1,5 +1,4 @@
 //! Equations as people write them, and printing that reads back.
-#![allow(clippy::unwrap_used)]
 
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};

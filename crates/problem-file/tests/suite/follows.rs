@@ -1,5 +1,4 @@
 //! What stands for a parameter: its order, and what determines it.
-#![allow(clippy::unwrap_used)]
 
 use lindstedt_equation::Expression;
 use lindstedt_problem_file::{ProblemFile, parse_expression};

@@ -1,6 +1,6 @@
 //! Averaged equations.
 
-use super::{Present, both, classification, condition_text, equation};
+use super::{Present, both, classification, condition_text, equation, head};
 use crate::{Document, Formula};
 use lindstedt::Answer;
 use lindstedt::averaging::{Averaging, Coefficient, Cycles, RateTerm, print_series};
@@ -19,8 +19,7 @@ impl Present for Answer<Averaging> {
     fn document(&self) -> Document {
         let result = &self.value;
         let problem = &result.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
-        let mut page = Document::titled(title.trim_end_matches([':', ' ']));
+        let mut page = head(problem);
         page = classification(page, result.description.as_ref());
         page = page.formula(equation(problem)).formula(ansatz(&problem.small));
         let normalisation = match result.between_turning_points() {

@@ -1,6 +1,6 @@
 //! A derivation as one would write it on the board, order by order.
 
-use super::{LATEX, Present, both, classification, condition_text, equation};
+use super::{LATEX, Present, both, classification, condition_text, equation, head};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name};
 use lindstedt::unstable::equation::{AmplitudeRole, Condition, Quantity};
@@ -30,8 +30,7 @@ struct Board<'a> {
 impl Board<'_> {
     fn page(&self) -> Document {
         let problem = &self.value.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
-        let mut page = Document::titled(title.trim_end_matches([':', ' ']));
+        let mut page = head(problem);
         page = classification(page, self.value.description.as_ref());
         page = page.formula(equation(problem)).formula(self.ansatz());
         page = page.words(format!("Normalisation: {}.", condition_text(self.value.condition)));

@@ -1,7 +1,7 @@
 //! Homoclinic orbits to any order: the parameter, the orbit, the nonlinear time.
 
 use super::derive::{coefficient, indexed};
-use super::{Present, both, equation};
+use super::{Present, both, equation, head};
 use crate::{Document, Formula, Text};
 use lindstedt::threshold::HomoclinicSeries;
 use lindstedt::unstable::coeff::print::{
@@ -13,10 +13,8 @@ impl Present for Answer<HomoclinicSeries> {
     fn document(&self) -> Document {
         let found = &self.value;
         let problem = &found.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
         let name = &found.unknown;
-        let mut page =
-            Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        let mut page = head(problem).formula(equation(problem));
         page = page.words(format!(
             "Sought: {name}, for which the orbit that leaves the saddle returns to it."
         ));

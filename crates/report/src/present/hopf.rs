@@ -1,7 +1,7 @@
 //! Hopf points: the parameter and the frequency in powers of the amplitude, the cycle, what they say.
 
 use super::derive::{coefficient, indexed};
-use super::{Present, both, equation, stability_word};
+use super::{Present, both, equation, head, stability_word};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::hopf::{Coefficient, Law};
@@ -21,8 +21,7 @@ impl Present for Answer<HopfSeries> {
     fn document(&self) -> Document {
         let found = &self.value;
         let problem = &found.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
-        let page = Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        let page = head(problem).formula(equation(problem));
         let page = series(found, motion(found, points(found, page)));
         let page = laws(found, page);
         page.words(match (found.cycle.checked_orders, found.cycle.exact) {

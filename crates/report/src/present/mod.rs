@@ -39,6 +39,12 @@ fn values(header: &Header) -> Vec<String> {
     header.at.iter().map(|(name, value)| format!("{name} = {value}")).collect()
 }
 
+/// The page of a problem under its name and its title.
+fn head(problem: &Problem) -> Document {
+    let title = format!("{}: {}", problem.name, problem.title);
+    Document::titled(title.trim_end_matches([':', ' ']))
+}
+
 /// `problem: name = value, ...`.
 fn problem_at(header: &Header) -> String {
     match &values(header)[..] {

@@ -1,7 +1,7 @@
 //! The parameter for which an orbit persists, to first order.
 
 use super::threshold::verdict;
-use super::{Present, equation};
+use super::{Present, equation, head};
 use crate::{Document, Formula, Text};
 use lindstedt::threshold::Persistence;
 use lindstedt::unstable::coeff::print::latex_name;
@@ -10,7 +10,6 @@ use lindstedt::{Answer, Number};
 impl Present for Answer<Persistence> {
     fn document(&self) -> Document {
         let found = &self.value;
-        let title = format!("{}: {}", found.problem.name, found.problem.title);
         let formula = |name: &str| Formula::new(name, latex_name(name));
         let sought = Text::words("Sought: ")
             .formula(formula(&found.unknown))
@@ -31,9 +30,6 @@ impl Present for Answer<Persistence> {
             lines.push((format!("orbit, {}", orbit.name).into(), check.into()));
         }
         lines.push(("validity".into(), verdict(found.validity)));
-        Document::titled(title.trim_end_matches([':', ' ']))
-            .formula(equation(&found.problem))
-            .words(sought)
-            .lines(lines)
+        head(&found.problem).formula(equation(&found.problem)).words(sought).lines(lines)
     }
 }

@@ -1,7 +1,7 @@
 //! Slow flows: averaged equations at resonance, in complex amplitudes and, for one unknown, in polar form.
 
 use super::average::shortened;
-use super::{Present, both, equation};
+use super::{Present, both, equation, head};
 use crate::Document;
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::derivation::resonance::{
@@ -13,8 +13,7 @@ impl Present for Answer<SlowFlow> {
     fn document(&self) -> Document {
         let board = Board(&self.value);
         let problem = &self.value.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
-        let page = Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        let page = head(problem).formula(equation(problem));
         board.checks(board.polar(board.flow(board.system(page))))
     }
 }
@@ -33,9 +32,7 @@ impl Present for Answer<Sought> {
     fn document(&self) -> Document {
         let found = &self.value;
         let problem = &found.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
-        let mut page =
-            Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        let mut page = head(problem).formula(equation(problem));
         let (name, nu) = (&found.parameter, &found.frequency);
         let turns = found.branches.iter().any(SoughtBranch::turns);
         let own = if turns { "but multiples of x_0' no part" } else { "no part" };
@@ -73,9 +70,7 @@ impl Present for Answer<NormalMode> {
     fn document(&self) -> Document {
         let mode = &self.value;
         let problem = &mode.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
-        let mut page =
-            Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        let mut page = head(problem).formula(equation(problem));
         page = page.words(format!(
             "Normal mode {}: nu^2 = {}; a is the amplitude of its first harmonic, rho = a^2, psi' = Omega.",
             mode.mode,

@@ -10,30 +10,12 @@ use lindstedt::trade::{LeftOut, Recommendation, Row, Summation, Trade};
 const LEAST: f64 = 1e-300;
 /// The names of what is printed; a proved error stands behind them.
 const TITLES: [&str; 9] = [
-    "tier",
-    "order",
-    "precision",
-    "summed",
-    "time",
-    "again",
-    "memory",
-    "true error",
-    "stated error",
+    "tier", "order", "precision", "summed", "time", "again", "memory", "true error", "stated error",
 ];
 /// The names in CSV: the keys of JSON.
 const KEYS: [&str; 12] = [
-    "tier",
-    "order",
-    "digits",
-    "harmonics",
-    "summed",
-    "seconds",
-    "seconds_again",
-    "memory_bytes",
-    "true_error",
-    "stated_error",
-    "proved_error",
-    "pareto",
+    "tier", "order", "digits", "harmonics", "summed", "seconds", "seconds_again", "memory_bytes",
+    "true_error", "stated_error", "proved_error", "pareto",
 ];
 
 fn colour(name: &str) -> Colour {

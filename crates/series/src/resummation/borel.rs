@@ -127,8 +127,6 @@ pub(super) fn laplace(pade: &Pade, x: &Float, nodes: &Nodes) -> Result<Float, Re
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     /// Euler's series sum (-1)^n n! x^n = int e^-s/(1 + x s) ds: e E_1(1) at x = 1 (A073003);

@@ -260,8 +260,6 @@ fn settled(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     type Series = (&'static str, fn(u32, u32) -> Float, fn(&Float) -> Float);

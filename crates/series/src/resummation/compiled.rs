@@ -306,8 +306,6 @@ impl Table<'_> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::resummation::{UniformMap, resum};
     use rug::Rational;

@@ -229,8 +229,6 @@ fn starts(p: &[Float], bits: u32) -> Vec<Complex> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     /// Zeros from 1e-6 to 1e9 and a pair: the product (z - a_k) multiplied out.

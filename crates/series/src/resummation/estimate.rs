@@ -302,8 +302,6 @@ pub(super) fn best_truncation(sums: &[Float], terms: &[Float]) -> Option<(usize,
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     /// The remainder of sum q^n cos(n phi) n^p at random q next to one, for slow oscillations too.

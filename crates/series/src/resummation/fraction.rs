@@ -94,8 +94,6 @@ pub(super) fn convergents(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     fn log(order: u32, bits: u32) -> Vec<Float> {

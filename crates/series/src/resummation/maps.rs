@@ -208,8 +208,6 @@ impl Map {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     const BITS: u32 = 200;

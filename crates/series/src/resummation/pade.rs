@@ -316,8 +316,6 @@ pub fn partial_sums(c: &[Float], x: &Float, bits: u32) -> Vec<Float> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use rug::Rational;
 

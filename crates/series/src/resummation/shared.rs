@@ -57,8 +57,6 @@ impl Shared {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::super::{Method, UniformMap, resum, resum_with};
     use super::*;
     use rug::{Float, Rational};

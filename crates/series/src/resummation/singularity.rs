@@ -304,8 +304,6 @@ fn kind(exponent: &Float, error: &Float) -> Option<Kind> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
 
     const BITS: u32 = 400;

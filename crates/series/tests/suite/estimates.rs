@@ -1,6 +1,5 @@
 //! Random functions with closed forms, random points, orders and methods: a true error above the
 //! estimate is a failure. The generator is seeded; `every_estimate` counts over many more.
-#![allow(clippy::unwrap_used)]
 
 use lindstedt_series::resummation::{Method, Sample, UniformMap, resum};
 use rug::Float;

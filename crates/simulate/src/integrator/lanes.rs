@@ -271,8 +271,6 @@ impl Together<Doubles> for Group {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::integrator::{Settings, go_on};
     use crate::quantity::{Parameters, Quantity};

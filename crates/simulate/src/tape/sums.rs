@@ -226,8 +226,6 @@ impl Plan {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
     use super::*;
     use crate::integrator::real::Doubles;
     use crate::quantity::{Parameters, Quantity};

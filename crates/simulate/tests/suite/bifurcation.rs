@@ -1,7 +1,5 @@
 //! Bifurcation diagrams of the stick-slip oscillator: order, resumption, cancellation, speed.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::common::{parameters, stick_slip};
 use lindstedt_equation::{Crossing, Expression, Function, Impact};
 use lindstedt_simulate::{

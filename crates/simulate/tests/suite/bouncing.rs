@@ -1,8 +1,6 @@
 //! Impacts: the bouncing oscillator against its exact impact times, and chattering against the
 //! exact geometric series.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_equation::{Crossing, Expression, Impact};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Places, Real, Report, Settings,

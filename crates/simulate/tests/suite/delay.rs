@@ -1,8 +1,6 @@
 //! Constant delays: y' = -y(t-1) against its exact piecewise polynomial, and the delayed
 //! vibro-impact oscillator against an independent simulation.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_equation::Expression;
 use lindstedt_number::Exact;
 use lindstedt_simulate::{

@@ -1,7 +1,5 @@
 //! |w|^p with p near -1: the powers of the series at w = 0 are too close together.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_equation::Expression;
 use lindstedt_simulate::{
     Digits, Integrator, Model, Outcome, Parameters, Report, Settings, SimulateError, System,

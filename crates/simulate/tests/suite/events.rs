@@ -1,8 +1,6 @@
 //! Events that are easy to get wrong: two roots in one step, touching, starts on surfaces,
 //! sliding in general systems, and what is refused by name.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_equation::{Crossing, Expression, Function, Impact};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Outcome, Parameters, Places, Quantity, Real,

@@ -1,8 +1,6 @@
 //! Saltation, monodromy and multipliers: against the exact impact map, and against differences of
 //! nonlinear solutions at high precision.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_equation::{Crossing, Expression, Function, Impact};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Places, Quantity, Real, Report,

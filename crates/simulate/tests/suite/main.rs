@@ -1,5 +1,5 @@
 //! The judge against closed forms, published orbits and itself.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test fails by panicking
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 mod bifurcation;
 mod bouncing;

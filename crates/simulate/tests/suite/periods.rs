@@ -1,7 +1,5 @@
 //! Periods of section 4 against closed forms, and the linearisation against differences.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_equation::{Expression, Function};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Places, Quantity, Real, Report,

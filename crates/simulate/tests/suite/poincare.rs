@@ -1,7 +1,5 @@
 //! Poincare sections at events, and the largest exponent, against closed forms.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::common::{parameters, stick_slip};
 use lindstedt_equation::{Crossing, Expression, Impact};
 use lindstedt_simulate::{

@@ -1,8 +1,6 @@
 //! The recurrences against the expression tree, which the test evaluates by itself at random
 //! points of random equations.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_equation::{Expression, Function, Unknown};
 use lindstedt_simulate::{Digits, Doubles, Integrator, Model, Parameters, Real, Report, Settings};
 use rug::ops::Pow;

@@ -1,8 +1,6 @@
 //! Section 3 at eps = 1: the period-2 stick-slip orbit, its doublings, chaos in one and in two
 //! wells, by orbits, exponents and the 0-1 test. Reference numbers: an independent event code.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::common::{parameters, stick_slip};
 use lindstedt_simulate::{
     Doubles, Integrator, LyapunovExponent, LyapunovSettings, PoincareMap, Point, Report, Section,

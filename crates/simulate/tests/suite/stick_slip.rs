@@ -1,8 +1,6 @@
 //! The stick-slip oscillator of section 3 against event-by-event solutions at 28 digits
 //! (tests/data/stick-slip/trajectories.json: an independent 45-digit event code).
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
 };

@@ -1,8 +1,6 @@
 //! Homoclinic tangencies of the stick-slip oscillator: small eps against Melnikov's threshold,
 //! eps = 1 against an independent event code (five digits known).
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use crate::common::{parameters, stick_slip};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_simulate::{

@@ -26,19 +26,8 @@ fn sources(folder: &Path, text: &mut Vec<String>) -> Outcome {
 /// The codes in a source text: literals where a code stands.
 fn codes(source: &str) -> BTreeSet<String> {
     let places = [
-        "code: ",
-        "usage(",
-        "no_answer(",
-        "undecided(",
-        "USAGE,",
-        "NO_ANSWER,",
-        "UNDECIDED,",
-        "FILE,",
-        "INTERRUPTED,",
-        "Usage,",
-        "NoAnswer,",
-        "Undecided,",
-        "Stopped,",
+        "code: ", "usage(", "no_answer(", "undecided(", "USAGE,", "NO_ANSWER,", "UNDECIDED,",
+        "FILE,", "INTERRUPTED,", "Usage,", "NoAnswer,", "Undecided,", "Stopped,",
     ];
     let mut found = BTreeSet::new();
     for place in places {

@@ -1,55 +1,20 @@
 //! Problem files with bytes, lines and words changed, in this process.
 
-use super::{Generator, count, not_a_number, number};
+use super::{count, not_a_number, number};
 use lindstedt::unstable::algebra::Stop;
 use lindstedt::{Answer, Error, Evaluate, Oscillator, Refusal, Stability, Threshold, Work};
 use lindstedt_report::{Format, Present, json};
+use lindstedt_tests::Random;
 use serde::Serialize;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Pieces that mean something in a problem file.
 const PIECES: [&str; 40] = [
-    "eps",
-    "x''",
-    "x'",
-    "x",
-    "(",
-    ")",
-    "^",
-    "*",
-    "+",
-    "-",
-    "/",
-    "0",
-    "1/3",
-    "1e300",
-    "-1",
-    "cos(t)",
-    "x(t - 1)",
-    "y",
-    "ln(x^2)",
-    "= 0",
-    "\"",
-    "'''",
-    "[",
-    "]",
-    "{",
-    "}",
-    "[parameters]",
-    "[impact]",
-    "[initial]",
-    "value = \"0\"",
-    "\n",
-    "#",
-    "\\u0000",
-    "nan",
-    "pi",
-    "sin(x)",
-    "|x|",
-    "sign(x)",
-    "taylor(sin(x), 3)",
-    "k = {}",
+    "eps", "x''", "x'", "x", "(", ")", "^", "*", "+", "-", "/", "0", "1/3", "1e300", "-1",
+    "cos(t)", "x(t - 1)", "y", "ln(x^2)", "= 0", "\"", "'''", "[", "]", "{", "}", "[parameters]",
+    "[impact]", "[initial]", "value = \"0\"", "\n", "#", "\\u0000", "nan", "pi", "sin(x)", "|x|",
+    "sign(x)", "taylor(sin(x), 3)", "k = {}",
 ];
 
 /// The examples of the book.
@@ -63,7 +28,7 @@ fn seeds() -> Vec<String> {
 }
 
 /// A file with one to four changes.
-fn mutated(g: &mut Generator, seeds: &[String]) -> String {
+fn mutated(g: &mut Random, seeds: &[String]) -> String {
     let mut text: Vec<char> = seeds[g.below(seeds.len())].chars().collect();
     for _ in 0..=g.below(3) {
         let at = g.below(text.len().max(1));
@@ -125,7 +90,7 @@ fn defect(text: &str, limit: Duration) -> Option<String> {
 }
 
 fn attack(seed: u64, count: usize, limit: Duration) {
-    let (mut g, seeds) = (Generator(seed), seeds());
+    let (mut g, seeds) = (Random(seed), seeds());
     let mut found = Vec::new();
     for _ in 0..count {
         let text = mutated(&mut g, &seeds);

@@ -1,6 +1,7 @@
 //! Random command lines, a process each: only so is an exit code one.
 
-use super::{Generator, count, not_a_number, number, refusal};
+use super::{count, not_a_number, number, refusal};
+use lindstedt_tests::Random;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
@@ -8,14 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 const VERBS: [&str; 9] = [
-    "derive",
-    "evaluate",
-    "threshold",
-    "stability",
-    "simulate",
-    "verify",
-    "respond",
-    "problems",
+    "derive", "evaluate", "threshold", "stability", "simulate", "verify", "respond", "problems",
     "trade",
 ];
 const PROBLEMS: [&str; 32] = [
@@ -53,75 +47,22 @@ const PROBLEMS: [&str; 32] = [
     "x'' + (x^2)^eps*x = 0",
 ];
 const NAMES: [&str; 20] = [
-    "eps",
-    "amplitude",
-    "n",
-    "delta",
-    "k",
-    "omega",
-    "vstar",
-    "gamma",
-    "alpha",
-    "beta",
-    "T0",
-    "a",
-    "b",
-    "A",
-    "B",
-    "R_r",
-    "s",
-    "sigma",
-    "F",
-    "nothing",
+    "eps", "amplitude", "n", "delta", "k", "omega", "vstar", "gamma", "alpha", "beta", "T0", "a",
+    "b", "A", "B", "R_r", "s", "sigma", "F", "nothing",
 ];
 const VALUES: [&str; 28] = [
-    "0",
-    "1",
-    "-1",
-    "1/10",
-    "1/2",
-    "3",
-    "0.4",
-    "-0.3",
-    "10",
-    "1e-6",
-    "1e6",
-    "1e-300",
-    "1e300",
-    "pi",
-    "pi/4",
-    "1/0",
-    "nan",
-    "inf",
-    "",
-    "x",
-    "1e999999999",
-    "2.5e-3",
-    "-5/3",
-    "99/100",
-    "1000001/1000000",
-    "+",
-    "-",
-    "7/2",
+    "0", "1", "-1", "1/10", "1/2", "3", "0.4", "-0.3", "10", "1e-6", "1e6", "1e-300", "1e300",
+    "pi", "pi/4", "1/0", "nan", "inf", "", "x", "1e999999999", "2.5e-3", "-5/3", "99/100",
+    "1000001/1000000", "+", "-", "7/2",
 ];
 const RANGES: [&str; 12] = [
-    "0..1:3",
-    "-1..1:5",
-    "1..0:3",
-    "0..1",
-    "1/10,1/5",
-    "0..0:2",
-    "0..1:0",
-    "0..1e9:3",
-    "1..2:100000000",
-    "..",
-    "a..b:c",
-    "1/2..2:2",
+    "0..1:3", "-1..1:5", "1..0:3", "0..1", "1/10,1/5", "0..0:2", "0..1:0", "0..1e9:3",
+    "1..2:100000000", "..", "a..b:c", "1/2..2:2",
 ];
 const COUNTS: [&str; 12] = ["0", "1", "2", "3", "4", "6", "9", "12", "-1", "1000000000", "x", "17"];
 
 /// A random line.
-fn line(g: &mut Generator) -> Vec<String> {
+fn line(g: &mut Random) -> Vec<String> {
     let verb = if g.once_in(60) { "frobnicate" } else { g.pick(&VERBS) };
     let mut list = vec![verb.to_owned()];
     if verb == "problems" {
@@ -143,10 +84,10 @@ fn line(g: &mut Generator) -> Vec<String> {
 }
 
 /// An option, most often one of the verb.
-fn option(g: &mut Generator, verb: &str) -> Vec<String> {
+fn option(g: &mut Random, verb: &str) -> Vec<String> {
     let named = |name: &str, value: String| vec![name.to_owned(), value];
-    let of = |name: &str, g: &mut Generator, list: &[&str]| named(name, g.pick(list).to_owned());
-    let swept = |name: &str, g: &mut Generator| {
+    let of = |name: &str, g: &mut Random, list: &[&str]| named(name, g.pick(list).to_owned());
+    let swept = |name: &str, g: &mut Random| {
         let range = format!("{}={}", g.pick(&NAMES), g.pick(&RANGES));
         named(name, range)
     };
@@ -238,7 +179,7 @@ fn defect(list: &[String], format: &str, limit: &str) -> Option<String> {
 
 /// Runs so many lines on all cores.
 fn attack(seed: u64, count: usize, limit: &'static str) {
-    let mut g = Generator(seed);
+    let mut g = Random(seed);
     let lines: Vec<(Vec<String>, &str)> = (0..count)
         .map(|_| (line(&mut g), g.pick(&["json", "json", "text", "latex", "markdown"])))
         .collect();

@@ -3,7 +3,6 @@
 
 use crate::program::{Folder, lindstedt, text};
 use serde_json::Value;
-use std::process::{Command, Output};
 
 /// Equations that are wrong: exit code, equation, a piece of the message.
 const EQUATIONS: [(i32, &str, &str); 62] = [
@@ -91,142 +90,8 @@ const REFUSED: [(&str, &str); 16] = [
     ("x'' + 2 x + eps*(x^2 - 1)*x'^2 + eps*x*x' = 0", "omega_0 is irrational"),
 ];
 
-/// Whole files that are wrong.
-const FILES: [(i32, &str, &str); 41] = [
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x(t - T) - eps*cos(w t)\"\n[parameters]\nT = { follows = '4*pi*k/w' }\nk = { value = '1' }\nw = { value = '2' }\n[synchronous]\ndelay = 'T'\nperiods = 'k'\nfrequency = 'w'",
-        "follows of T: by [synchronous] it is 2*pi*k/w",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x(t - T) - eps*cos(w t)\"\n[parameters]\nT = { follows = '2*pi*k/w' }\nk = { value = '1' }\nw = { follows = '2*k' }\n[synchronous]\ndelay = 'T'\nperiods = 'k'\nfrequency = 'w'",
-        "follows of w: [synchronous] needs a parameter with a value",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = '1'",
-        "x and velocity belong",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nhistory = 'x'",
-        "a history is an expression in t",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nhistory = 'cos(k t)'",
-        "the name k is not declared",
-    ),
-    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nswept = ['eps=1..2']", "is no range"),
-    (2, "", "one of the keys `equation` and `equations` is needed"),
-    (2, "name = 'a'", "one of the keys `equation` and `equations` is needed"),
-    (
-        2,
-        "equation = \"x'' + x + eps*pi*x^3\"\n[parameters]\npi = {}",
-        "is not a name for a parameter",
-    ),
-    (2, "name = 'a'\nname = 'b'\nequation = \"x'' + eps*x\"", "duplicate key"),
-    (2, "name = 'a'\nequation = \"x'' + eps*x\"\nequation = \"x''\"", "duplicate key"),
-    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\ncolour = 'red'", "unknown field `colour`"),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\namplitude = { follows = '1/2' }",
-        "follows of amplitude: the amplitude and",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\neps = { follows = '1/2' }",
-        "follows of eps: the amplitude and",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + b*x + eps*x^3\"\n[parameters]\nb = { follows = 'c' }\nc = { follows = '2*b' }",
-        "follows from itself in the end",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + b*x + eps*x^3\"\n[parameters]\nb = { follows = '2*q' }",
-        "the name q is not declared",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + b*x + eps*x^3\"\n[parameters]\nb = { value = '1', follows = '2' }",
-        "it has a value, too",
-    ),
-    (2, "name = '../../x'\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
-    (2, "name = 'A b'\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
-    (2, "name = ''\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
-    (2, "name = 3\nequation = \"x'' + x + eps*x^3\"", "invalid type"),
-    (2, "name = 'a'\nequation = 7", "invalid type"),
-    (2, "name = 'a\nequation = \"x''\"", "invalid"),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x\"\ncondition = 'limit-cycle'",
-        "the small parameter eps does not occur",
-    ),
-    (2, "name = 'a'\nsmall = 'mu'\nequation = \"x'' + x + eps*x^3\"\n[parameters]", "not declared"),
-    (2, "name = 'a'\nsmall = 'x'\nequation = \"x'' + x\"", "is not a name for a small parameter"),
-    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\ncondition = 'none'", "condition cannot be"),
-    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nasked = ['colour']", "asked cannot be"),
-    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nfixed = ['k']", "fixed mentions k"),
-    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\norders = { k = 1 }", "orders mentions k"),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = 0.1 }",
-        "in quotes",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = 'nan' }",
-        "cannot read the value",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = '1/0' }",
-        "cannot read the value",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = nan }",
-        "in quotes",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nsin = { value = '1' }",
-        "is not a name for a parameter",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nω = { value = '1' }\nomega = { value = '1' }",
-        "unquoted",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\n'ω' = { value = '1' }\nomega = { value = '1' }",
-        "omega is declared twice",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[impact]\nposition = 's'\ncrossing = 'up'\nrestitution = '1'",
-        "crossing cannot be",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\namplitude = 'scales-frequency'",
-        "x is not x*(x^2)^(small parameter)",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x*(x^2)^(2*eps)\"\namplitude = 'scales-frequency'",
-        "x*(x^2)^(2*eps) is not",
-    ),
-    (
-        2,
-        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\namplitude = 'in-small-parameter'",
-        "one other that the equation does not mention",
-    ),
-];
+/// Whole files that are wrong: after three signs of equality the exit code and a piece of the message.
+const FILES: &str = include_str!("bad.txt");
 
 fn with_parameters(equation: &str) -> String {
     format!(
@@ -235,27 +100,13 @@ fn with_parameters(equation: &str) -> String {
     )
 }
 
-/// KiB of address space for a refusal. The C library reserves 64 MiB of it, and for a moment 128 MiB, for
-/// the heap of the thread that watches the limits.
-const LEAST_MEMORY: u32 = 200_000;
-
-/// A run with a limit of its address space, which includes code, libraries and stacks.
-#[cfg(unix)]
-fn with_memory(kibibytes: u32, arguments: &[&str]) -> Output {
-    let script = format!("ulimit -v {kibibytes} && exec \"$0\" \"$@\"");
-    let mut command = Command::new("sh");
-    command.args(["-c", &script, env!("CARGO_BIN_EXE_lindstedt")]).args(arguments);
-    command.output().unwrap()
-}
-
-#[cfg(not(unix))]
-fn with_memory(_: u32, arguments: &[&str]) -> Output {
-    lindstedt(arguments)
-}
+/// Address space in KiB for a refusal, code, libraries and stacks included. The C library reserves 64 MiB of it, and for a
+/// moment 128 MiB, for the heap of the thread that watches the limits.
+const LEAST_MEMORY: &str = "-v 200000";
 
 /// What is wrong with the refusal of a file; nothing when it is right.
-fn refused(path: &str, exit: i32, message: &str, code: &str) -> Option<String> {
-    let output = with_memory(LEAST_MEMORY, &["derive", path, "--order", "2"]);
+fn refused(folder: &Folder, path: &str, exit: i32, message: &str, code: &str) -> Option<String> {
+    let output = folder.under(LEAST_MEMORY, &["derive", path, "--order", "2"]);
     let error = String::from_utf8(output.stderr).unwrap();
     let status = output.status.code();
     let one_line = error.lines().count() == 1 && error.len() < 500 && !error.contains("panicked");
@@ -274,7 +125,7 @@ fn a_hundred_bad_files_get_one_clear_line_each() {
     let (mut count, mut wrong) = (0, Vec::new());
     let mut check = |content: &[u8], exit, message: &str, code| {
         let path = folder.file("bad.toml", content);
-        if let Some(error) = refused(&path, exit, message, code) {
+        if let Some(error) = refused(&folder, &path, exit, message, code) {
             let content = String::from_utf8_lossy(&content[..content.len().min(120)]);
             wrong.push(format!("{content} | wanted {exit} {message} | {error}"));
         }
@@ -286,8 +137,10 @@ fn a_hundred_bad_files_get_one_clear_line_each() {
     for (equation, message) in REFUSED {
         check(with_parameters(equation).as_bytes(), 3, message, "no-method");
     }
-    for (exit, content, message) in FILES {
-        check(content.as_bytes(), exit, message, "problem-file");
+    for block in FILES.split("=== ").skip(1) {
+        let (head, content) = block.split_once('\n').unwrap();
+        let (exit, message) = head.split_once(' ').unwrap();
+        check(content.as_bytes(), exit.parse().unwrap(), message, "problem-file");
     }
     let deep = |open: &str, close: &str| {
         let equation = format!("x'' + {}x{} = 0", open.repeat(100_000), close.repeat(100_000));
@@ -311,11 +164,11 @@ fn a_hundred_bad_files_get_one_clear_line_each() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(count >= 110, "{count}");
     for path in ["/nonexistent.toml", "../../x.toml", "/dev/null/x.toml"] {
-        assert_eq!(refused(path, 5, "cannot read", "file"), None, "{path}");
+        assert_eq!(refused(&folder, path, 5, "cannot read", "file"), None, "{path}");
     }
     std::fs::create_dir(folder.0.join("folder.toml")).unwrap();
     let path = folder.0.join("folder.toml");
-    assert_eq!(refused(path.to_str().unwrap(), 5, "it is not a file", "file"), None);
+    assert_eq!(refused(&folder, path.to_str().unwrap(), 5, "it is not a file", "file"), None);
 }
 
 /// Equations without a constant amplitude, or without one that is known exactly, and their condition: the

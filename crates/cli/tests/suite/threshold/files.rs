@@ -1,6 +1,7 @@
 //! What the threshold of a file is about: the term, the parameter, the saddles.
 
 use super::{File, decimal};
+use crate::program::refuses;
 
 fn text(file: &File, arguments: &[&str]) -> String {
     let output = file.run(arguments);
@@ -67,10 +68,8 @@ fn forces_that_are_zero() {
     assert_eq!((&silent["amplitude"], &loud["amplitude"]), (&"0".into(), &"1".into()));
     // Two parameters: their proportion is open.
     let equation = "x'' - x + x^3 = eps (gamma cos(omega t) + h cos(2 omega t) - delta x')";
-    let output = File::new("open-ratio", equation, &values("0", "0")).run(&[]);
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(3), "{message}");
-    assert!(message.contains("which of them grows is open"), "{message}");
+    let open = File::new("open-ratio", equation, &values("0", "0"));
+    refuses(&["threshold", &open.0], 3, "which of them grows is open");
     // One of them is zero: the threshold is that of the other, and it says so.
     let other = File::new("other", equation, &values("0", "1"));
     let found = other.json(&["--digits", "12"]);
@@ -160,10 +159,7 @@ fn keys_of_the_file_hold_for_sweeps() {
     assert_eq!(found["curve"], file.json(&["--sweep", "delta=1/10..3/10:3"])["curve"]);
     assert_eq!(found["curve"].as_array().unwrap().len(), 3);
     for arguments in [["--sweep", "omega=1..2:3"], ["--zeros", "omega=1..2"]] {
-        let output = file.run(&arguments);
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains("fixed"), "{message}");
+        refuses(&[&["threshold", &file.0], &arguments[..]].concat(), 2, "fixed");
     }
 }
 

@@ -141,7 +141,6 @@ impl Oscillator {
         };
         let at = self.clone().with(&axis.name, axis.values[0].clone()).placed()?.0;
         let at = at.values_of_proof()?.into_iter().filter(|(name, _)| *name != axis.name);
-        let at = at.map(|(name, value)| (name, value.to_string())).collect();
         let header = self.header(at, None, "contraction proof", start);
         let (parameter, values) = (axis.name, axis.values);
         let value = ProvedFamily { parameter, values, branches };

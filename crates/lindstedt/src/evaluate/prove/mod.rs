@@ -94,9 +94,7 @@ impl Oscillator {
                 (ProvedOrbit::estimated(found, &failure), Standing::Undecided)
             }
         };
-        let at = case.values_of_proof()?.into_iter();
-        let at = at.map(|(name, value)| (name, value.to_string())).collect();
-        let header = self.header(at, order, "contraction proof", start);
+        let header = self.header(case.values_of_proof()?, order, "contraction proof", start);
         Ok(Answer { header, value, standing, remarks })
     }
 

@@ -2,8 +2,6 @@
 //! against other formulas at four times the precision (polar form for the root, exponentials
 //! for the circular and hyperbolic functions), at centres, on rims and at corners.
 
-#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
 use super::*;
 use rug::Integer;
 use rug::float::Constant;

@@ -95,16 +95,10 @@ fn variations(q: &Quotients, map: &ImpactMap) -> [Statement; 2] {
     let [dx, dv] = [&map.displacement_variation, &map.velocity_variation].map(Clone::clone);
     let remark = "(11) has both terms right";
     [
-        Statement::new(("$dx$", "delta x = "), DISPLACEMENT, &flight, dx).with(
-            "",
-            BY_DIFFERENTIATION,
-            "",
-        ),
-        Statement::new(("$dx'$", "delta x' = "), VELOCITY, &flight, dv).with(
-            "",
-            BY_DIFFERENTIATION,
-            remark,
-        ),
+        Statement::new(("$dx$", "delta x = "), DISPLACEMENT, &flight, dx)
+            .with("", BY_DIFFERENTIATION, ""),
+        Statement::new(("$dx'$", "delta x' = "), VELOCITY, &flight, dv)
+            .with("", BY_DIFFERENTIATION, remark),
     ]
 }
 
@@ -133,11 +127,8 @@ fn eliminated(map: &ImpactMap, ends: &Arc<Setting>) -> Result<Vec<Statement>, Er
         let label = format!("(12), {n}");
         let remark = if n == TWELVE.len() { &*propagation } else { "" };
         let independent = "(11) with $omega dT = dphi' - dphi$, $dx'_+ = -R_r dx'_-$";
-        Statement::new((&label, "0 = "), printed, ends, derived.clone()).with(
-            "",
-            independent,
-            remark,
-        )
+        Statement::new((&label, "0 = "), printed, ends, derived.clone())
+            .with("", independent, remark)
     };
     Ok((1..).zip(TWELVE.into_iter().zip(&map.equations)).map(statement).collect())
 }
@@ -153,11 +144,8 @@ fn characteristic_equation(map: &ImpactMap, ends: &Arc<Setting>) -> Result<Vec<S
     let lines = B.iter().zip(map.characteristic.iter().rev()).zip(remarks);
     let statement = |(n, ((printed, derived), remark)): (usize, ((&&str, &Quotient), String))| {
         let (label, left) = (format!("$b_{n}$, (16)"), format!("b_{n} = "));
-        Statement::new((&label, &left), printed, ends, derived.clone()).with(
-            "",
-            &independent,
-            &remark,
-        )
+        Statement::new((&label, &left), printed, ends, derived.clone())
+            .with("", &independent, &remark)
     };
     Ok((0..B.len()).rev().zip(lines).map(statement).collect())
 }

@@ -1,0 +1,136 @@
+//! Why an oscillator has no response: the reason, and the verb that serves.
+
+use crate::grid::Axis;
+use crate::refusal::Refused;
+use crate::{DerivationError, Error, Kind, Oscillator, Refusal, SlowFlow, Work};
+use lindstedt_derivation::resonance::ResonanceError;
+use lindstedt_evaluation::rotating::NoFrame;
+
+/// A slow flow that was stopped at a lower order is that of other states.
+pub(super) fn whole(slow: SlowFlow, order: usize) -> Result<SlowFlow, Error> {
+    if slow.order < order {
+        let message = format!("stopped at order {} of the slow flow of order {order}", slow.order);
+        return Err(Refused::stopped(message, "raise --limit-seconds or lower --order").into());
+    }
+    Ok(slow)
+}
+
+/// Whether an error says that this name has no value.
+pub(super) fn is_unset(error: &Error, name: &str) -> bool {
+    error.code() == "no-value-set" && error.to_string().contains(name)
+}
+
+pub(super) fn no_frame(why: NoFrame) -> Error {
+    let (message, hint) = match why {
+        NoFrame::NoForce => (
+            "without a force the phase of a steady state is free: the motions that lock are looked for of two unknowns",
+            "of one unknown `lindstedt evaluate` has the periodic motions; `derive --normalisation free` has the slow flow, `derive --mode` normal modes, `simulate` the motions",
+        ),
+        _ => (
+            "forces of different detunings act on the same amplitudes: these are steady in no frame, they beat",
+            "`lindstedt simulate` shows the motion, `derive --normalisation free` the slow flow",
+        ),
+    };
+    Refused::no_answer("no-response", message, hint).into()
+}
+
+/// Branches of less than the slow flow would be those of another one.
+pub(super) fn not_whole() -> Error {
+    let message =
+        "a frequency is irrational, and coefficients of the slow flow cannot be told from zero";
+    let hint = "without --sweep: the states at one value, their number estimated; more --digits";
+    Refused::no_answer("no-rational-modes", message, hint).into()
+}
+
+/// Refuses a slow flow that depends on frequencies without a value.
+pub(super) fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
+    slow.system.open_frequency().map_or(Ok(()), |name| Err(oscillator.unset(name)))
+}
+
+/// Whether all frequencies are multiples of this name.
+pub(super) fn is_unit(slow: &SlowFlow, name: &str) -> bool {
+    slow.system.unit.as_ref().is_some_and(|unit| unit.name == name)
+}
+
+pub(super) fn no_amplitude(what: &str) -> Error {
+    let message = format!(
+        "energy is conserved: normal modes are families over their amplitude, which {what}"
+    );
+    Refused::usage("no-value-set", message, "--set amplitude=1, or --sweep amplitude=0.1..2").into()
+}
+
+pub(super) fn uncoupled(slow: &SlowFlow, order: usize) -> Error {
+    if slow.system.forces.is_empty() {
+        let message = format!("up to order {order} no resonance ties the phases of the unknowns");
+        let hint = "`lindstedt derive --mode 1` has normal modes, `derive --normalisation free` the slow flow; a higher --order";
+        return Refused::no_answer("no-response", message, hint).into();
+    }
+    let message = format!("up to order {order} no resonance couples the force to an amplitude");
+    let square = slow.system.squares.first().filter(|_| slow.system.algebraic.is_none());
+    let hint = match square.filter(|_| !slow.system.is_exact()) {
+        Some(square) => at_root(&square.to_string()),
+        None => "a frequency nearer to a resonance (or the detuning as a parameter)".to_owned(),
+    };
+    Refused::no_answer("no-response", message, format!("{hint}, a higher --order")).into()
+}
+
+/// How a force beside an irrational frequency is written: no number is at its resonance.
+fn at_root(square: &str) -> String {
+    format!("its frequency as the root with a detuning: cos((sqrt({square}) + eps*sigma)*t)")
+}
+
+pub(super) fn no_resonance(name: &str) -> Error {
+    let message = format!(
+        "no value of {name} lies around a resonance that couples the force to an amplitude"
+    );
+    let hint = "a range about a resonance, or the detuning as a parameter of its own";
+    Refused::no_answer("no-response", message, hint).into()
+}
+
+/// The code of a force of order one at a resonance.
+const RESONANT: &str = "resonance";
+/// Values of a frequency at which it is looked for.
+const PROBED: usize = 41;
+
+/// The refusal of a force of order one that a value of its frequency brings beside a resonance.
+pub(super) fn strong_force(case: &Oscillator, axis: &Axis, work: &Work) -> Option<Error> {
+    let stride = axis.values.len().div_ceil(PROBED).max(1);
+    axis.values.iter().step_by(stride).find_map(|value| {
+        let found = case.clone().with(&axis.name, value.clone()).flow(1, work);
+        found.err().filter(|error| error.code() == RESONANT)
+    })
+}
+
+pub(super) fn no_polynomial(symbol: &str, name: &str) -> Error {
+    let message = format!("the slow flow contains {symbol}: over {name} it is no polynomial");
+    let hint = format!("--set {name}=VALUE, and another parameter varies");
+    Refused::no_answer("no-response", message, hint).into()
+}
+
+pub(super) fn no_part(name: &str) -> Error {
+    let message = format!("the slow flow does not depend on {name}");
+    Refused::no_answer("no-response", message, "a parameter of the equation varies").into()
+}
+
+/// The refusal of a problem that has no slow flow, with the verb that serves.
+pub(super) fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
+    let (kind, code, hint) = error.parts();
+    if kind != Kind::NoAnswer || code == RESONANT {
+        return error;
+    }
+    let problem = oscillator.problem();
+    let other = match problem.conditions.is_empty() {
+        true => "`lindstedt threshold` and `lindstedt simulate` take motions beside a saddle",
+        false => "`lindstedt evaluate` has the periods of strongly nonlinear motions",
+    };
+    if let Error::Derivation(DerivationError::Resonance(ResonanceError::NoRationalModes {
+        squares,
+    })) = &error
+        && !squares.contains(',')
+    {
+        return Refused { code, kind, message: error.to_string(), hint: at_root(squares) }.into();
+    }
+    let message = format!("no response from a slow flow: {error}");
+    let hint = if hint.is_empty() { other.to_owned() } else { format!("{hint}; {other}") };
+    Refused { code, kind, message, hint }.into()
+}
