@@ -194,14 +194,15 @@ fn fill(
     let row = Fixed::new(&parameters, plan);
     let mut columns = match (plan.predictor, &row.ground) {
         (Some((_, order)), Some(ground)) if plan.columns.is_gain() => {
-            Some(Columns::new(plan, order, &parameters, ground))
+            Some(Columns::new(plan.columns.parameter, order, &parameters, ground))
         }
         _ => None,
     };
     for (n, points) in line.chunks_mut(LANES).enumerate() {
         let first = n * LANES;
         let whole = columns.as_mut().filter(|_| points.len() == LANES);
-        let maps = whole.map(|columns| columns.maps(first, &mut scratch.1));
+        let values = || std::array::from_fn(|l| plan.columns.value(first + l));
+        let maps = whole.map(|columns| columns.maps(values(), &mut scratch.1));
         for (k, point) in points.iter_mut().enumerate() {
             if maps.is_none() || plan.exact.is_some() {
                 plan.columns.set(first + k, &mut parameters);
