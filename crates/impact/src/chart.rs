@@ -151,6 +151,7 @@ pub fn chart(
     width.checked_mul(height).ok_or(ImpactError::BadAxes)?;
     // Blocks of rows one after the other: what is finished when the work is stopped begins with the first row.
     let (done, mut points) = (AtomicUsize::new(0), Vec::new());
+    let columns = Fixed::of_columns(base, plan);
     let block = (BLOCK / width).max(FEWEST_ROWS);
     for first in (0..height).step_by(block) {
         let before = points.len();
@@ -160,7 +161,8 @@ pub fn chart(
         let finished = lines.try_for_each_init(
             || (Scratch::new(order), Scratch::new(order)),
             |scratch, (row, (line, filled))| {
-                *filled = fill(base, plan, rows.start + first + row, (line, scratch), &|| {
+                let row = rows.start + first + row;
+                *filled = fill(base, (plan, &columns), row, (line, scratch), &|| {
                     observer(done.load(Ordering::Relaxed))
                 });
                 if *filled < width {
@@ -181,7 +183,7 @@ pub fn chart(
 /// One row, unless `goes_on` says no: a long one is not waited for. How many of its points were computed.
 fn fill(
     base: &Parameters<f64>,
-    plan: &Plan,
+    (plan, known): (&Plan, &[Fixed]),
     row: usize,
     (line, scratch): (&mut [Point], &mut Buffers),
     goes_on: &dyn Fn() -> bool,
@@ -192,20 +194,22 @@ fn fill(
     let row = Fixed::new(&parameters, plan);
     let mut columns = match (plan.predictor, &row.ground) {
         (Some((_, order)), Some(ground)) if plan.columns.is_gain() => {
-            Some(Columns::new(plan, order, &parameters, ground))
+            Some(Columns::new(plan.columns.parameter, order, &parameters, ground))
         }
         _ => None,
     };
     for (n, points) in line.chunks_mut(LANES).enumerate() {
         let first = n * LANES;
         let whole = columns.as_mut().filter(|_| points.len() == LANES);
-        let maps = whole.map(|columns| columns.maps(first, &mut scratch.1));
+        let values = || std::array::from_fn(|l| plan.columns.value(first + l));
+        let maps = whole.map(|columns| columns.maps(values(), &mut scratch.1));
         for (k, point) in points.iter_mut().enumerate() {
             if maps.is_none() || plan.exact.is_some() {
                 plan.columns.set(first + k, &mut parameters);
             }
-            let column = (!plan.columns.is_gain()).then(|| Fixed::new(&parameters, plan));
-            let fixed = column.as_ref().unwrap_or(&row);
+            let own = (!plan.columns.is_gain() && known.is_empty())
+                .then(|| Fixed::new(&parameters, plan));
+            let fixed = known.get(first + k).or(own.as_ref()).unwrap_or(&row);
             let map = match &maps {
                 Some(maps) => maps[k].clone(),
                 None => fixed.map(&parameters, plan, &mut scratch.0),
@@ -234,6 +238,19 @@ struct Fixed {
 }
 
 impl Fixed {
+    /// Of every column, where the rows are a gain, so that it is the same in all of them; nothing where it is not, and for
+    /// so many columns that one asked to stop would be waited for.
+    fn of_columns(base: &Parameters<f64>, plan: &Plan) -> Vec<Self> {
+        if plan.columns.is_gain() || !plan.rows.is_gain() || plan.columns.count > BLOCK {
+            return Vec::new();
+        }
+        let column = |n| {
+            let mut parameters = base.clone();
+            plan.columns.set(n, &mut parameters);
+            Self::new(&parameters, plan)
+        };
+        (0..plan.columns.count).into_par_iter().map(column).collect()
+    }
     fn new(parameters: &Parameters<f64>, plan: &Plan) -> Self {
         let time = parameters.period();
         let needs_orbit = plan.exact.is_some()

@@ -4,10 +4,9 @@
 //! processor. In every lane the operations and their order are those of a single double, sine and exponential those of
 //! the library, so the numbers are the same bit by bit.
 
-use crate::chart::Plan;
 use crate::flow::{Flow, Scratch, free_delay};
 use crate::map::ImpactMap;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, Swept};
 use crate::prediction::Ground;
 use lindstedt_number::complex::Complex;
 use lindstedt_number::real::Real;
@@ -171,7 +170,7 @@ impl Real for Lanes {
 
 /// The columns of one row whose gain grows along it.
 pub(crate) struct Columns<'p> {
-    plan: &'p Plan,
+    gain: Swept,
     order: usize,
     time: Lanes,
     delay: Complex<Lanes>,
@@ -183,7 +182,7 @@ pub(crate) struct Columns<'p> {
 
 impl<'p> Columns<'p> {
     pub(crate) fn new(
-        plan: &'p Plan,
+        gain: Swept,
         order: usize,
         parameters: &Parameters<f64>,
         ground: &'p Ground<f64>,
@@ -191,7 +190,7 @@ impl<'p> Columns<'p> {
         let time = parameters.period();
         let delay = free_delay(parameters, &time);
         Self {
-            plan,
+            gain,
             order,
             time: Lanes::all(&time),
             delay: Complex::new(Lanes::all(&delay.re), Lanes::all(&delay.im)),
@@ -201,16 +200,13 @@ impl<'p> Columns<'p> {
             arch: pulp::Arch::new(),
         }
     }
-    /// The maps of the columns from number `first` on, of those that have one.
+    /// The maps for some values of the gain, of those that have one.
     pub(crate) fn maps(
         &mut self,
-        first: usize,
+        values: [f64; LANES],
         scratch: &mut Scratch<Lanes>,
     ) -> [Option<ImpactMap<f64>>; LANES] {
-        let axis = &self.plan.columns;
-        let mut values = Lanes::all(&0.0);
-        values.0.iter_mut().enumerate().for_each(|(l, x)| *x = axis.value(first + l));
-        *self.parameters.slot(axis.parameter) = values;
+        *self.parameters.slot(self.gain) = Lanes(values);
         let (flow, map) = self.arch.dispatch(Maps { columns: self, scratch });
         if let Some(ImpactMap { trace: Lanes(trace), determinant: Lanes(determinant) }) = map {
             return std::array::from_fn(|l| {

@@ -75,8 +75,9 @@ fn doubles_lose_three_digits_near_grazing() {
     assert!((condition - 305.0).abs() < 1.0, "{condition}");
 }
 
-/// The columns of a chart are computed side by side; a point alone goes through one double after the other. Same bits,
-/// also where some of those side by side have no orbit, another branch of a formula, or too few neighbours.
+/// The columns of a chart are computed side by side, and what the gains do not change once for a row or a column; a point
+/// alone goes through one double after the other. Same bits, also where some of those side by side have no orbit,
+/// another branch of a formula, or too few neighbours.
 #[test]
 fn columns_side_by_side_are_points_alone() {
     let (mut found, mut refused) = (0, 0);
@@ -86,8 +87,16 @@ fn columns_side_by_side_are_points_alone() {
             base.wall = wall;
             for variant in [Variant::E, Variant::P, Variant::S] {
                 for (order, count) in [(1, 43), (2, 8), (6, 67)] {
-                    let counts = same_bits(&base, variant, order, (reach, count));
-                    (found, refused) = (found + counts[0], refused + counts[1]);
+                    let around = |gain: f64, reach| (gain - reach, gain + reach);
+                    let gains = [
+                        (Swept::DisplacementGain, around(0.0, reach), count),
+                        (Swept::VelocityGain, around(0.0, reach), 11),
+                    ];
+                    let frequency = (Swept::Omega, around(base.omega, 0.5 * reach), count);
+                    for axes in [gains, [frequency, gains[1]], [gains[0], frequency]] {
+                        let counts = same_bits(&base, variant, order, axes);
+                        (found, refused) = (found + counts[0], refused + counts[1]);
+                    }
                 }
             }
         }
@@ -100,12 +109,13 @@ fn same_bits(
     base: &Parameters<f64>,
     variant: Variant,
     order: usize,
-    (reach, count): (f64, usize),
+    axes: [(Swept, (f64, f64), usize); 2],
 ) -> [usize; 2] {
-    let axis = |parameter, count| Axis { parameter, low: -reach, high: reach, count };
+    let [columns, rows] =
+        axes.map(|(parameter, (low, high), count)| Axis { parameter, low, high, count });
     let plan = Plan {
-        columns: axis(Swept::DisplacementGain, count),
-        rows: axis(Swept::VelocityGain, 11),
+        columns,
+        rows,
         predictor: Some((Predictor::Kbm(variant), order)),
         exact: None,
         radius: true,
@@ -114,8 +124,8 @@ fn same_bits(
     let mut counts = [0; 2];
     for (n, point) in chart(base, &plan, &|_| true).unwrap().points.iter().enumerate() {
         let mut p = base.clone();
-        p.displacement_gain = plan.columns.value(n % count);
-        p.velocity_gain = plan.rows.value(n / count);
+        *p.slot(columns.parameter) = columns.value(n % columns.count);
+        *p.slot(rows.parameter) = rows.value(n / columns.count);
         let flow = predicted_flow(&p, &rates(&p, order), order);
         let map = flow.and_then(|flow| predict(variant, &p, &flow, None)).map(|found| found.map);
         let alone = map.as_ref().ok().map(|map| (map.verdict(), map.spectral_radius().to_bits()));
