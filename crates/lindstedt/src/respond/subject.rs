@@ -340,7 +340,8 @@ impl<'a> Subject<'a> {
         values.map(|value| detuning(value).ok_or(Error::NoValue)).collect()
     }
 
-    /// How far to look: as asked, else so that all steady states of the lowest order that bounds any lie within.
+    /// How far to look: as asked, else so that all steady states of the lowest order lie within in which a force acts and that bounds
+    /// them.
     pub(super) fn reach(&self, at: &[Values]) -> Result<Reach, Error> {
         let largest = |rotating: &Rotating| {
             let bound = |values: &Values| match rotating.unforced() {
@@ -369,7 +370,8 @@ impl<'a> Subject<'a> {
         Ok(Reach { modulus, less, complete })
     }
 
-    /// A box of the lowest order that bounds its states, and a smaller one: with its states, or as large as the orders fall within.
+    /// A box of the lowest order in which a force acts and that bounds its states, and a smaller one: with its states, or as large as
+    /// the orders fall within. Orders before that one have rest, whose bound is nothing to the states that a force makes.
     fn leading(
         &self,
         at: &[Values],
@@ -387,6 +389,9 @@ impl<'a> Subject<'a> {
         };
         for order in 1..=self.order {
             let rotating = rotating(&sure, &small, order).map_err(no_frame)?;
+            if rotating.fixed == 0 && self.rotating.fixed > 0 {
+                continue;
+            }
             let Some(most) = largest(&rotating) else {
                 match outer(&rotating, None) {
                     Some(most) => return Ok((ROOM * most, None)),
