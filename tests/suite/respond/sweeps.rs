@@ -334,3 +334,21 @@ fn one_crossing_is_one() {
         }
     }
 }
+
+/// At eps = 0 every amplitude is steady: no range of eps holds that.
+#[test]
+fn a_range_of_the_small_parameter_is_of_one_sign() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*F*cos((1 + eps*sigma)*t)";
+    let case = Oscillator::parse(equation).unwrap().set("F", "1/2").unwrap();
+    let case = case.set("sigma", "1").unwrap();
+    let asked = |axis: &str, second: Option<&str>| {
+        let [sweep, second] = [Some(axis), second].map(|it| it.map(|it| Axis::parse(it).unwrap()));
+        case.clone().respond(&Respond { sweep, second, ..to_order(1) }, &Work::default())
+    };
+    for axis in ["eps=-1/10..1/10:3", "eps=0..1/10:3", "eps=-1/10..0:3", "eps=-1/20,1/20"] {
+        let refused = asked(axis, None).unwrap_err().to_string();
+        assert!(refused.contains("holds 0"), "{axis}: {refused}");
+    }
+    assert!(asked("sigma=0..1:3", Some("eps=0..1/10:3")).is_err());
+    assert!(asked("eps=1/100..1/10:3", None).is_ok());
+}

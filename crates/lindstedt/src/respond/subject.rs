@@ -149,6 +149,7 @@ impl<'a> Subject<'a> {
         factor: Option<Rational>,
     ) -> Result<Self, Error> {
         let small = oscillator.problem().small.to_string();
+        refuse_zero(question, &small)?;
         let rotating = coupled(&slow, &small, order, question.sweep.is_some())?;
         let tongues = Tongues::of(&slow, &small, order);
         let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
@@ -569,6 +570,19 @@ pub(super) fn doubles(values: &Values) -> Vec<f64> {
     let number =
         |value: &Option<Value>| value.as_ref().map_or(f64::NAN, |it| it.interval().middle());
     values.iter().map(number).collect()
+}
+
+/// Refuses a range of the small parameter that holds 0: there w' = 0 for every w, and branches would run through that.
+fn refuse_zero(question: &Respond, small: &str) -> Result<(), Error> {
+    let mut axes = [&question.sweep, &question.second].into_iter().flatten();
+    let Some(axis) = axes.find(|axis| axis.name == small) else { return Ok(()) };
+    let values = || axis.values.iter().map(Exact::to_f64);
+    if values().any(|value| value <= 0.0) && values().any(|value| value >= 0.0) {
+        let message = format!("a range of {small} that holds 0, where every amplitude is steady");
+        let hint = format!("values of one sign: --sweep {small}=1/100..1/10");
+        return Err(Refused::usage("parameter", message, hint).into());
+    }
+    Ok(())
 }
 
 /// A slow flow that was stopped at a lower order is that of other states.
