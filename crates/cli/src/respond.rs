@@ -21,7 +21,7 @@ pub struct RespondOptions {
     /// Orders of the slow flow.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=60))]
     pub order: u32,
-    /// The largest amplitude looked at; by default one that has all states of the first order.
+    /// The largest amplitude looked at; by default one that has all states of the first order in which the force acts.
     #[arg(long = "box", value_name = "AMPLITUDE")]
     pub amplitude: Option<String>,
     /// With --sweep: the equation itself integrated along the values, upwards and downwards, each from the end of the one

@@ -316,3 +316,32 @@ fn two_modes_in_the_whole_box() {
     }
     assert_eq!(reached, [true; 3]);
 }
+
+/// Where the force acts first at a higher order the box is that of this order; orders before it have rest alone, and no room for these.
+/// x = x_f + a cos(...) with the forced part x_f = eps F/(1 - nu^2) cos(nu t). At nu = 1/2 its square drives x with (8/9) eps (eps F)^2, at
+/// damping eps/10 and detuning 2 eps sigma, to leading order; at nu = 2 it is a parametric force h = 2 eps F/3, against the shift 5 eps a^2/12
+/// of the square (Nayfeh and Mook, sections 4.2 and 5.7).
+#[test]
+fn the_box_is_that_of_the_order_in_which_the_force_acts() {
+    let read = |state: &State| state.amplitudes[0].decimal.parse::<f64>().unwrap();
+    let super_harmonic = "x'' + x + eps*(x'/5 + x^2) = eps*F*cos((1/2 + eps*sigma)*t)";
+    let set = [("eps", "1/10"), ("F", "3"), ("sigma", "1/10")];
+    let found = ask(super_harmonic, &set, &to_order(3));
+    let states = &found.states[0];
+    assert_eq!((states.count, states.count_proved), (1, true));
+    let known = 8.0 / 9.0 * 0.009 / (2.0 * 0.01f64.hypot(0.02));
+    assert!((read(&states.list[0]) / known - 1.0).abs() < 0.02, "{known} {:?}", states.list);
+    let sweep = Some(lindstedt::grid::Axis::parse("sigma=-1..1:5").unwrap());
+    let swept = ask(super_harmonic, &set[..2], &Respond { sweep, ..to_order(3) });
+    assert_eq!(swept.branches.len(), 1);
+    let parametric = "x'' + x + eps*(x'/50 + x^2) = eps*F*cos(2*t)";
+    let found = ask(parametric, &set[..2], &to_order(2));
+    let states = &found.states[0];
+    assert_eq!((states.count, states.count_proved), (3, true));
+    let known = (24.0 * (0.05f64.powi(2) - 0.01f64.powi(2)).sqrt()).sqrt();
+    for state in &states.list[..2] {
+        assert!((read(state) / known - 1.0).abs() < 1e-3, "{known} {state:?}");
+        assert_eq!(state.stable, Some(true));
+    }
+    assert_eq!((read(&states.list[2]), states.list[2].stable), (0.0, Some(false)));
+}

@@ -291,3 +291,64 @@ fn sweeps_beside_an_irrational_mode() {
         assert_eq!(number(&fold.amplitudes[1]), 0.0);
     }
 }
+
+/// Principal parametric resonance, mu^2 + (sigma - 3 a^2/8)^2 = h^2/16 at order one: motions are born of rest at a = 0, where the branch
+/// that turns in them is no fold, and at mu = 0 the divergence -2 mu of the slow flow is zero everywhere: centres, no Hopf point.
+#[test]
+fn pitchforks_of_rest_are_no_folds() {
+    let equation = "x'' + x + eps*(2*mu*x' + x^3 + x*cos((2 + eps*sigma)*t)) = 0";
+    let edge = (0.25f64 - 0.04).sqrt();
+    for (set, sweep, edge) in
+        [(("mu", "1/10"), "sigma=-2..2:5", edge), (("sigma", "0"), "mu=-1..1:5", 0.25)]
+    {
+        let sweep = Some(Axis::parse(sweep).unwrap());
+        let question = Respond { sweep, amplitude: Some("4".parse().unwrap()), ..to_order(1) };
+        let found = ask(equation, &[("eps", "1/10"), set], &question);
+        assert_eq!((found.folds.len(), found.hopf.len(), found.crossings.len()), (0, 0, 2));
+        for (crossing, known) in found.crossings.iter().zip([-edge, edge]) {
+            let at: f64 = crossing.value.decimal.parse().unwrap();
+            assert!((at - known).abs() < 1e-9, "{at}");
+            assert_eq!(decimals(&crossing.amplitudes), [0.0]);
+        }
+    }
+}
+
+/// A sign that continuation changes where it steps over to another branch beside a crossing is no crossing: there is one, at rest, and
+/// the numbers of states on either side of it are those of a search.
+#[test]
+fn one_crossing_is_one() {
+    let equation = "x'' + x + eps*(x'/5 + x^3 + h*x*cos((2 + eps*sigma)*t)) = 0";
+    let amplitude: Option<lindstedt::Exact> = Some("3".parse().unwrap());
+    for (order, sigma) in [(2, "-1"), (3, "-4/5")] {
+        let set = [("eps", "1/10"), ("sigma", sigma)];
+        let sweep = Some(Axis::parse("h=0..4:5").unwrap());
+        let question = Respond { amplitude: amplitude.clone(), ..to_order(order) };
+        let found = ask(equation, &set, &Respond { sweep, ..question.clone() });
+        let [crossing] = &found.crossings[..] else { panic!("{:?}", found.crossings) };
+        assert_eq!((found.folds.len(), decimals(&crossing.amplitudes)), (0, vec![0.0]));
+        let at: f64 = crossing.value.decimal.parse().unwrap();
+        for (beside, count) in [(-1e-5, 1), (1e-5, 3)] {
+            let h = format!("{:.12}", at + beside);
+            let alone = ask(equation, &[set[0], set[1], ("h", &*h)], &question);
+            assert_eq!((alone.states[0].count, alone.states[0].count_proved), (count, true));
+        }
+    }
+}
+
+/// At eps = 0 every amplitude is steady: no range of eps holds that.
+#[test]
+fn a_range_of_the_small_parameter_is_of_one_sign() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*F*cos((1 + eps*sigma)*t)";
+    let case = Oscillator::parse(equation).unwrap().set("F", "1/2").unwrap();
+    let case = case.set("sigma", "1").unwrap();
+    let asked = |axis: &str, second: Option<&str>| {
+        let [sweep, second] = [Some(axis), second].map(|it| it.map(|it| Axis::parse(it).unwrap()));
+        case.clone().respond(&Respond { sweep, second, ..to_order(1) }, &Work::default())
+    };
+    for axis in ["eps=-1/10..1/10:3", "eps=0..1/10:3", "eps=-1/10..0:3", "eps=-1/20,1/20"] {
+        let refused = asked(axis, None).unwrap_err().to_string();
+        assert!(refused.contains("holds 0"), "{axis}: {refused}");
+    }
+    assert!(asked("sigma=0..1:3", Some("eps=0..1/10:3")).is_err());
+    assert!(asked("eps=1/100..1/10:3", None).is_ok());
+}

@@ -21,8 +21,6 @@ const DIVIDE: (i32, i32) = (137, 100);
 const MOST_BOXES: usize = 200_000;
 /// Zeros this near to one another, in parts of the largest |w_j|, are the phases that a gauge leaves to one motion.
 const SAME: f64 = 1e-9;
-/// Folds this near to a crossing, in parts of the reach and in its square of the range, are the crossing's own unless proved.
-const PITCHFORK: f64 = 0.03;
 /// Points of two branches this near are one, in parts of the reach.
 const NEAR: f64 = 1e-4;
 
@@ -181,6 +179,7 @@ impl Subject<'_> {
     ) -> Result<(), Error> {
         let open = self.open()[0].ok_or_else(not_determined)?;
         let course = steady::Course { parameter: open, ..course.clone() };
+        let wide = course.range[1] - course.range[0];
         let values = self.values([None, None]);
         let mut known: Vec<&Located> = Vec::new();
         let branches = free.branches(&values, found, &course);
@@ -188,23 +187,15 @@ impl Subject<'_> {
         let changes = branches.iter().flat_map(|it| &it.changes);
         let crossings: Vec<_> =
             changes.filter(|it| it.change == steady::Change::Crossing).collect();
-        // A branch born of another one turns where they cross, and the equations of a fold are singular there.
-        let wide = course.range[1] - course.range[0];
-        let turns = |fold: &Located, other: &Located| {
-            let near = fold.at.iter().zip(&other.at[..4]);
-            fold.change == steady::Change::Fold
-                && fold.proved.is_none()
-                && near.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) < PITCHFORK * course.reach
-                && (fold.at[4] - other.at[4]).abs() < PITCHFORK.powi(2) * wide
-        };
         for Turning { branch, rates, changes } in &branches {
             let mut shown = self.shown_branch(branch);
             for (point, delta) in shown.points.iter_mut().zip(rates) {
                 point.frequency = self.frequency(*delta, self.rate(Some(point.value.value)));
             }
             response.branches.push(shown);
-            for found in changes.iter().filter(|it| !crossings.iter().any(|other| turns(it, other)))
-            {
+            let apparent =
+                |it: &&Located| crossings.iter().any(|other| it.is_part_of(other, &course));
+            for found in changes.iter().filter(|it| !apparent(it)) {
                 // Each of two branches knows their crossing.
                 let near = |it: &&Located| {
                     let same = it.change == found.change

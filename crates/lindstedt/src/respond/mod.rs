@@ -39,8 +39,9 @@ pub struct Respond {
     pub sweep: Option<Axis>,
     /// A second one: curves of folds and Hopf points, cusps and Bogdanov-Takens points in the plane of the two.
     pub second: Option<Axis>,
-    /// The largest amplitude that is looked at; if nothing, one that has the steady states of the slow flow of the lowest order that
-    /// bounds any, or, where the states in it are not decided, one within which every order adds less than the order before.
+    /// The largest amplitude that is looked at; if nothing, 5/4 of a bound of the steady states of the slow flow of the lowest order in
+    /// which the force acts and that bounds them, or, where the states in it are not decided, one within which every order adds less
+    /// than the order before.
     pub amplitude: Option<Exact>,
     /// With a sweep: also the equation itself, integrated along the values upwards and downwards, each from the end of the
     /// one before.

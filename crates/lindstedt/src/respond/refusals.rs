@@ -1,8 +1,9 @@
 //! Why an oscillator has no response: the reason, and the verb that serves.
 
+use super::Respond;
 use crate::grid::Axis;
 use crate::refusal::Refused;
-use crate::{DerivationError, Error, Kind, Oscillator, Refusal, SlowFlow, Work};
+use crate::{DerivationError, Error, Exact, Kind, Oscillator, Refusal, SlowFlow, Work};
 use lindstedt_derivation::resonance::ResonanceError;
 use lindstedt_evaluation::rotating::NoFrame;
 
@@ -133,4 +134,17 @@ pub(super) fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
     let message = format!("no response from a slow flow: {error}");
     let hint = if hint.is_empty() { other.to_owned() } else { format!("{hint}; {other}") };
     Refused { code, kind, message, hint }.into()
+}
+
+/// Refuses a range of the small parameter that holds 0: there w' = 0 for every w, and branches would run through that.
+pub(super) fn refuse_zero(question: &Respond, small: &str) -> Result<(), Error> {
+    let mut axes = [&question.sweep, &question.second].into_iter().flatten();
+    let Some(axis) = axes.find(|axis| axis.name == small) else { return Ok(()) };
+    let values = || axis.values.iter().map(Exact::to_f64);
+    if values().any(|value| value <= 0.0) && values().any(|value| value >= 0.0) {
+        let message = format!("a range of {small} that holds 0, where every amplitude is steady");
+        let hint = format!("values of one sign: --sweep {small}=1/100..1/10");
+        return Err(Refused::usage("parameter", message, hint).into());
+    }
+    Ok(())
 }

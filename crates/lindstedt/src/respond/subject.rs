@@ -4,7 +4,7 @@ use super::answer::{Estimate, Response};
 use super::frequency::{Varying, forcing_frequency, moving_frequency, resonant};
 use super::refusals::{
     has_numbers, is_unit, is_unset, no_amplitude, no_frame, no_part, no_polynomial, no_resonance,
-    not_weak, not_whole, strong_force, uncoupled, whole,
+    not_weak, not_whole, refuse_zero, strong_force, uncoupled, whole,
 };
 use super::{ORDER, Respond, SEARCHES, STEPS, not_determined};
 use crate::grid::Axis;
@@ -152,6 +152,7 @@ impl<'a> Subject<'a> {
         factor: Option<Rational>,
     ) -> Result<Self, Error> {
         let small = oscillator.problem().small.to_string();
+        refuse_zero(question, &small)?;
         let rotating = coupled(&slow, &small, order, question.sweep.is_some())?;
         let tongues = Tongues::of(&slow, &small, order);
         let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
@@ -337,7 +338,8 @@ impl<'a> Subject<'a> {
         values.map(|value| detuning(value).ok_or(Error::NoValue)).collect()
     }
 
-    /// How far to look: as asked, else so that all steady states of the lowest order that bounds any lie within.
+    /// How far to look: as asked, else so that all steady states of the lowest order lie within in which a force acts and that bounds
+    /// them.
     pub(super) fn reach(&self, at: &[Values]) -> Result<Reach, Error> {
         let largest = |rotating: &Rotating| {
             let bound = |values: &Values| match rotating.unforced() {
@@ -366,7 +368,8 @@ impl<'a> Subject<'a> {
         Ok(Reach { modulus, less, complete })
     }
 
-    /// A box of the lowest order that bounds its states, and a smaller one: with its states, or as large as the orders fall within.
+    /// A box of the lowest order in which a force acts and that bounds its states, and a smaller one: with its states, or as large as
+    /// the orders fall within. Orders before that one have rest, whose bound is nothing to the states that a force makes.
     fn leading(
         &self,
         at: &[Values],
@@ -384,6 +387,9 @@ impl<'a> Subject<'a> {
         };
         for order in 1..=self.order {
             let rotating = rotating(&sure, &small, order).map_err(no_frame)?;
+            if rotating.fixed == 0 && self.rotating.fixed > 0 {
+                continue;
+            }
             let Some(most) = largest(&rotating) else {
                 match outer(&rotating, None) {
                     Some(most) => return Ok((ROOM * most, None)),

@@ -14,6 +14,7 @@ use super::search::{Found, Limits, Places, modulus, zeros_at};
 use super::value::Value;
 use lindstedt_number::Exact;
 use lindstedt_number::interval::Interval;
+use nalgebra::DMatrix;
 
 /// What is asked.
 #[derive(Clone, Debug)]
@@ -43,6 +44,24 @@ pub struct Located {
     pub proved: Option<Zero>,
 }
 
+impl Located {
+    /// Whether this may be a crossing itself, seen from beside it: a branch that is born of another one turns where they cross, and
+    /// continuation steps over to the other one there; the equations of a fold are singular, so that none is proved.
+    #[must_use]
+    pub fn is_part_of(&self, crossing: &Self, course: &Course) -> bool {
+        let wide = course.range[1] - course.range[0];
+        let (Some((value, state)), Some((other, place))) =
+            (self.at.split_last(), crossing.at.split_last())
+        else {
+            return false;
+        };
+        matches!(self.change, Change::Fold | Change::Crossing)
+            && self.proved.is_none()
+            && state.iter().zip(place).all(|(x, y)| (x - y).abs() < PITCHFORK * course.reach)
+            && (value - other).abs() < PITCHFORK.powi(2) * wide
+    }
+}
+
 /// The branches.
 #[derive(Clone, Debug)]
 pub struct Response {
@@ -62,6 +81,12 @@ pub struct Response {
 const MOST_BOXES: usize = 50_000;
 /// Points this near in all unknowns, in parts of the reach, are the same.
 const NEAR: f64 = 1e-4;
+/// Changes this near to a crossing, in parts of the reach and in its square of the range, are the crossing's own unless proved.
+const PITCHFORK: f64 = 0.03;
+/// Where branches cross the derivative by all variables loses rank: the smallest of its singular values, in parts of the largest.
+const SINGULAR: f64 = 1e-2;
+/// A divergence that is zero, in parts of the derivative.
+const FLAT: f64 = 1e-9;
 
 impl Survey<'_> {
     /// The branches that pass the samples within the box. Nothing where `values` leaves other than one parameter open.
@@ -153,25 +178,61 @@ impl Survey<'_> {
         Some(found)
     }
 
+    /// What is marked on the branches: of several marks of one crossing that where the derivative is nearest to losing rank.
     fn changes(&self, branches: &[Branch]) -> Vec<Located> {
         let marked = branches.iter().enumerate().flat_map(|(index, branch)| {
             branch.points.iter().filter_map(move |point| Some((index, point, point.change?)))
         });
-        let mut list: Vec<Located> = Vec::new();
-        for (branch, point, change) in marked {
-            let found =
-                located(self.flow, &self.values, self.course.reach, (branch, point, change));
-            let (change, at) = (found.change, &found.at);
-            let same =
-                |known: &Located| known.change == change && near(&known.at, at, self.course.reach);
+        let found = marked.map(|it| located(self.flow, &self.values, self.course.reach, it));
+        let (crossings, mut list): (Vec<_>, Vec<_>) =
+            found.partition(|it| it.change == Change::Crossing);
+        let system = self.flow.system(&self.values);
+        let loss =
+            |it: &Located| if it.proved.is_some() { 0.0 } else { self.rank(&system, &it.at) };
+        let mut crossings: Vec<_> = crossings.into_iter().map(|it| (loss(&it), it)).collect();
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut known: Vec<Located> = Vec::new();
+        for (_, found) in crossings.into_iter().filter(|(loss, _)| *loss < SINGULAR) {
             // Each of two branches knows their crossing.
-            if change == Change::Crossing && list.iter().any(same) {
-                continue;
+            let same = |other: &Located| {
+                near(&other.at, &found.at, self.course.reach)
+                    || found.is_part_of(other, &self.course)
+            };
+            if !known.iter().any(same) {
+                known.push(found);
             }
-            list.push(found);
         }
+        list.retain(|it| match it.change {
+            Change::Hopf => !self.conserves_area(&system, &it.at),
+            _ => !known.iter().any(|other| it.is_part_of(other, &self.course)),
+        });
+        list.append(&mut known);
         list.sort_by(|a, b| a.at[a.at.len() - 1].total_cmp(&b.at[b.at.len() - 1]));
         list
+    }
+
+    /// The smallest singular value of the derivative by all variables, each in its unit, in parts of the largest.
+    fn rank(&self, system: &System, at: &[f64]) -> f64 {
+        let (n, [low, high]) = (at.len() - 1, self.course.range);
+        let (_, slopes) = system.derivatives(at);
+        let unit = |j: usize| if j < n { self.course.reach } else { high - low };
+        let scaled = DMatrix::from_fn(n, n + 1, |i, j| slopes[i * (n + 1) + j] * unit(j));
+        let values = scaled.singular_values();
+        values.min() / values.max()
+    }
+
+    /// Whether a flow of two unknowns has the divergence zero everywhere at this value of the parameter: then a pair of exponents on
+    /// the axis is that of a centre, of which no oscillation of one size is born.
+    fn conserves_area(&self, system: &System, at: &[f64]) -> bool {
+        let [_, _, value] = at[..] else { return false };
+        let parts = [-0.9, -0.35, 0.2, 0.75];
+        let places = parts.iter().flat_map(|x| parts.iter().map(move |y| [*x, *y]));
+        places.into_iter().all(|[x, y]| {
+            let reach = self.course.reach;
+            let (_, slopes) = system.derivatives(&[reach * x, reach * y, value]);
+            let size = [0, 1, 3, 4].iter().fold(0.0f64, |m, k| m.max(slopes[*k].abs()));
+            (slopes[0] + slopes[4]).abs() <= FLAT * size
+        })
     }
 }
 
