@@ -48,9 +48,24 @@ use periodic::Periodic;
 use resonant::Resonant;
 use rug::Rational;
 use run::{Compare, compare_all, with_digits};
+use serde::Serialize;
 use std::time::Instant;
 pub use steady::{SteadyDifference, SteadyState, SteadyStates};
-pub use verdict::{Comparison, TOLERANCE, Verdict, Verification};
+pub use verdict::{Comparison, TOLERANCE, Verification};
+
+/// What the comparison says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// The observed order is N + 1 within [`TOLERANCE`], or it has settled there or at a whole
+    /// number above: the terms that were left out begin later.
+    Agrees,
+    /// It has settled at a whole number below N + 1.
+    Disagrees,
+    /// The errors are not above those of the integration, or as large as the motion, there are
+    /// fewer than two, or the slopes have not settled: the small parameter is not small enough.
+    Undecided,
+}
 
 /// What to verify.
 ///

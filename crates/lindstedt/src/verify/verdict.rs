@@ -1,6 +1,6 @@
 //! What the errors at several values of the small parameter say of the order of accuracy.
 
-use super::{SteadyStates, Verify};
+use super::{SteadyStates, Verdict, Verify};
 use crate::{Number, Status};
 use lindstedt_equation::Condition;
 use rug::{Float, Rational};
@@ -54,20 +54,6 @@ impl Serialize for Comparison {
 enum Cell<'a> {
     Number(&'a Number),
     Slope(Option<f64>),
-}
-
-/// What the comparison says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// The observed order is N + 1 within [`TOLERANCE`], or it has settled there or at a whole
-    /// number above: the terms that were left out begin later.
-    Agrees,
-    /// It has settled at a whole number below N + 1.
-    Disagrees,
-    /// The errors are not above those of the integration, or as large as the motion, there are
-    /// fewer than two, or the slopes have not settled: the small parameter is not small enough.
-    Undecided,
 }
 
 /// The result of [`crate::Oscillator::verify`].
