@@ -184,7 +184,7 @@ fn rates_of_random_equations_with_a_delay() {
         let mut twelfths = || random.below(25) as i64 - 12;
         let [a, b, c, d] = [twelfths(), twelfths(), twelfths(), twelfths()];
         let (delay, eps) = (1 + random.below(36), 2 + random.below(59));
-        let order = 2 + random.below(4) as usize;
+        let order = 2 + random.below(4);
         let equation = format!(
             "x'' + x + eps*({a}/12*x' + {b}/12*x(t - {delay}/12) + {c}/12*x'(t - {delay}/12) + {d}/12*x) = 0"
         );
