@@ -3,7 +3,7 @@
 use lindstedt_number::Exact;
 
 /// x'' = a x - b x^3 + eps (gamma cos(omega t) - T(x' - v*)),
-/// T(w) = T0 sgn w - alpha w + beta w^3. All dimensionless. The closed form of a [`System`], where it has one:
+/// T(w) = T0 sgn w - alpha w + beta w^3. All dimensionless. The closed form of a [`System`](crate::System), where it has one:
 /// [`StickSlip::of`]; the system of a closed form: [`StickSlip::system`]. In doubles: [`FastPoint`].
 ///
 /// ```
