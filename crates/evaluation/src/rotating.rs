@@ -90,8 +90,14 @@ pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Result<Rotating, 
     let free = relations.weights().zip(<[_; 2]>::try_from(equations).ok());
     let parameters = flow.parameters.clone();
     let free = free.filter(|_| fixed > 0 || system.forces.is_empty());
-    let free =
-        free.map(|(weights, equations)| FreePhase { equations, weights, parameters, energy });
+    let definite = energy.as_ref().is_some_and(|[one, two]| one.is_positive_times(two));
+    let free = free.map(|(weights, equations)| FreePhase {
+        equations,
+        weights,
+        parameters,
+        energy,
+        definite,
+    });
     Ok(Rotating { flow, whole, turns, fixed, combination, free, backbone })
 }
 

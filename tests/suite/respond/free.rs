@@ -2,6 +2,7 @@
 
 use super::{ask, decimals, to_order};
 use lindstedt::grid::Axis;
+use lindstedt::respond::State;
 use lindstedt::{Oscillator, Refusal, Respond, Status, Verify, Work};
 use rug::Rational;
 
@@ -118,6 +119,42 @@ fn eight_normal_modes() {
     let refused = Oscillator::parse(wells).unwrap().set("eps", "1/10").unwrap();
     let refused = refused.respond(&Respond::default(), &Work::default()).unwrap_err();
     assert!(refused.to_string().contains(remarks) && refused.hint().contains("--sweep amplitude"));
+}
+
+/// Families of other energies than masses in a potential have. In an isotropic one with gyroscopic terms motions on circles have
+/// omega^2 +- 2 eps omega = 1 + eps a^2. Where the second unknown has a negative energy, motions have to order one
+/// 3/4 (a_1^2 - a_2^2) = -(r + 1/r), r = +-a_2/a_1; on a_1 = a_2, where the energy is zero, amplitudes grow, and there is none.
+#[test]
+fn families_of_other_energies() {
+    let circles = "x'' + x + eps*(x*(x^2 + y^2) - 2*y'); y'' + y + eps*(y*(x^2 + y^2) + 2*x')";
+    let values = [("eps", "1/100"), ("amplitude", "1")];
+    let mut states = ask(circles, &values, &to_order(4)).states.remove(0);
+    assert!(states.count_proved && states.count == 2);
+    let rate = |state: &State| state.frequency.unwrap().value;
+    states.list.sort_by(|one, other| rate(one).total_cmp(&rate(other)));
+    for (state, sign) in states.list.iter().zip([1.0, -1.0]) {
+        let omega = -sign * 0.01 + f64::sqrt(1e-4 + 1.0 + 0.005);
+        let found = state.frequency.unwrap().value;
+        assert!((found - omega).abs() < 1e-9, "{found} {omega}");
+        let [a, b] = decimals(&state.amplitudes)[..] else { panic!("two") };
+        assert!((a * a - 0.5).abs() < 1e-9 && (b * b - 0.5).abs() < 1e-9);
+    }
+    let indefinite = "x'' + x + eps*(x^3 + y); y'' + y + eps*(-x + y^3)";
+    for (amplitude, count) in [("1", 0), ("3", 4)] {
+        let values = [("eps", "1/10"), ("amplitude", amplitude)];
+        let states = ask(indefinite, &values, &to_order(1)).states.remove(0);
+        assert!(states.count_proved && states.count == count, "{states:?}");
+        for state in &states.list {
+            let [a, b] = decimals(&state.amplitudes)[..] else { panic!("two") };
+            let off = 0.75 * (a * a - b * b);
+            let sum = b / a + a / b;
+            assert!((off.abs() - sum).abs() < 1e-9 && (a * a + b * b - 9.0).abs() < 1e-9);
+        }
+    }
+    let reversible = Oscillator::parse("x'' + x + eps*(x*x'^2 + 2*y); y'' + y + eps*(2*x + y^3)");
+    let refused = reversible.unwrap().set("eps", "1/10").unwrap();
+    let refused = refused.respond(&Respond::default(), &Work::default()).unwrap_err();
+    assert!(refused.to_string().contains("no energy is known"), "{refused}");
 }
 
 /// Motions are born of rest where its exponents pass zero. Of two oscillators of van der Pol with dampers k between them these are to

@@ -1,7 +1,7 @@
 //! The slow flow of a system over any coefficients: derived, checked, with its energy; and over rational numbers.
 
+use super::conserved::conserved_energy;
 use super::delays::Delays;
-use super::potential::potential;
 use super::system::refuse_delays;
 use super::{
     Names, ResonanceError, Room, SlowFlow, System, Terms, refuse_near_miss, sum_of_harmonics,
@@ -171,17 +171,17 @@ impl Job<'_> {
             Err(ExpandError::Interrupted { .. }) => (None, Vec::new()),
             other => (Some(found.order()), other?),
         };
-        let conserved =
-            checked.filter(|_| !delays.any()).and_then(|_| potential(&system.equations));
-        let energy = match conserved.filter(|_| system.forces.is_empty()) {
+        let conserved = checked.filter(|_| !delays.any() && system.forces.is_empty());
+        let energy = match conserved.and_then(|_| conserved_energy(&system.equations)) {
             None => Vec::new(),
-            Some((weights, potential)) => {
-                let alone = |(j, v)| Expression::unknown(j, 2) + v;
-                let others = std::iter::repeat_n(Expression::integer(0), weights.len() - 1);
-                let all = std::iter::once(potential).chain(others).enumerate().map(alone);
-                let all: Vec<_> = all.collect();
+            Some(sum) => {
+                // As the rest of an equation of its own.
+                let rest = std::iter::once(sum).chain(std::iter::repeat(Expression::integer(0)));
+                let alone = |(j, rest)| Expression::unknown(j, 2) + rest;
+                let all: Vec<_> =
+                    rest.take(system.equations.len()).enumerate().map(alone).collect();
                 let graph = compile_system(&algebra, &all, &binding, settings.order)?;
-                match energy(&algebra, &graph, &weights, &found) {
+                match energy(&algebra, &graph, &found) {
                     _ if settings.stop.asked() || algebra.overflowed() => Vec::new(),
                     other => other?,
                 }

@@ -25,12 +25,12 @@ pub struct QuadraticInvariant {
 }
 
 impl SlowFlow {
-    /// Independent quadratic forms that the f_1, ..., f_n keep, those of most orders first, of several unknowns whose energy is conserved; none where coefficients are
-    /// enclosed.
+    /// Independent quadratic forms that the f_1, ..., f_n keep, those of most orders first, of several unknowns; none where
+    /// coefficients are enclosed.
     #[must_use]
     pub fn quadratic_invariants(&self) -> Vec<QuadraticInvariant> {
         let unknowns = self.unknowns();
-        if unknowns < 2 || self.energy.is_empty() || self.enclosed.is_some() || self.order == 0 {
+        if unknowns < 2 || self.enclosed.is_some() || self.order == 0 {
             return Vec::new();
         }
         let rates: Vec<Matrix> = (1..=self.order).map(|n| self.rates_of_squares(n)).collect();

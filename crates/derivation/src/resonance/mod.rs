@@ -13,6 +13,7 @@
 //! symbol sigma = (omega - Omega)/eps.
 
 mod algebraic;
+mod conserved;
 mod delays;
 mod enclosed;
 mod error;
@@ -24,7 +25,6 @@ mod modes;
 mod motion;
 mod normal_mode;
 mod polar;
-mod potential;
 mod print;
 mod quotients;
 mod sought;
@@ -99,8 +99,9 @@ pub struct SlowFlow {
     pub detuning: Vec<Vec<Terms>>,
     /// The smallest divisor of every order and unknown.
     pub nearest: Vec<Nearest>,
-    /// Where the equations derive from a potential: the energy sum_j mu_j x_j'^2/2 + V order by order, mu_1 = 1, which
-    /// was found to be conserved by the flow, identically. So it contains no fast phase. Else empty.
+    /// Where the equations derive from a potential, but for terms of velocities that do no work together: the energy
+    /// sum_j mu_j x_j'^2/2 + V order by order, mu_1 = 1 or a product of parameters by which others are divided, which was found to
+    /// be conserved by the flow, identically. So it contains no fast phase. The mu_j may differ in sign. Else empty.
     pub energy: Vec<Terms>,
     /// Where frequencies are irrational: what the coefficients are known within. Those given are in the middle.
     pub enclosed: Option<Enclosed>,

@@ -5,7 +5,8 @@ use lindstedt_phase::amplitudes::AmplitudeTerm;
 use rug::Rational;
 
 /// The energy along a flow is a slow quantity. Of masses 1 and 3 the second equation is divided by 3; its weight is found. By
-/// hand, order 0: 2 nu_j^2 |z_j|^2 of each; a force that is no gradient has none.
+/// hand, order 0: 2 mu_j nu_j^2 |z_j|^2 of each. Weights may differ in sign, and by parameters; gyroscopic terms do no work, others of
+/// velocities do.
 #[test]
 fn energy_is_conserved() {
     let found = flow("x'' + x + 2*eps*x*y + eps*al*x^3; 3*y'' + 12*y + eps*x^2", 3, &[]);
@@ -16,9 +17,27 @@ fn energy_is_conserved() {
         |t: &AmplitudeTerm| t.exponents[0] - t.exponents[1] + 2 * (t.exponents[2] - t.exponents[3]);
     assert!(found.energy[1..].iter().all(|terms| !terms.is_empty()));
     assert!(found.energy.iter().flatten().all(|t| fast(t) == 0));
-    let other = flow("x'' + x + eps*x*y; y'' + 4*y - eps*x^2", 1, &[]);
-    assert!(other.energy.is_empty());
-    assert!(flow("x'' + x + eps*x^2*x'", 1, &[]).energy.is_empty());
+    let others = [
+        ("x'' + x + eps*x*y; y'' + 4*y - eps*x^2", ["2 z1 zbar1", "-4 z2 zbar2"]),
+        (
+            "x'' + x + eps*(x^3 - 2*y*y'); y'' + y + eps*(2*y*x' + y^2)",
+            ["2 z1 zbar1", "2 z2 zbar2"],
+        ),
+        ("x'' + x + eps*k*m*(x - y); y'' + y + eps*k*(y - x)", ["2 z1 zbar1", "2 z2 zbar2 m"]),
+        ("x'' + x + eps*k/m*(x - y); y'' + y + eps*k*(y - x)", ["2 z1 zbar1 m", "2 z2 zbar2"]),
+    ];
+    for (equations, energy) in others {
+        let found = flow(equations, 2, &[]);
+        assert_eq!(named(&found, &found.energy[0]), by_hand(&energy), "{equations}");
+    }
+    for equations in [
+        "x'' + x + eps*x^2*x'",
+        "x'' + x + eps*(x*y + y^2); y'' + 4*y - eps*x^2",
+        "x'' + x + eps*(x^3 + y - 2*y'); y'' + y + eps*(x - 2*x')",
+        "x'' + x + eps*x*x'^2; y'' + y",
+    ] {
+        assert!(flow(equations, 1, &[]).energy.is_empty(), "{equations}");
+    }
     // Frequencies 1 and sqrt 2, V = eps x^2 y^2: <V> and the velocities, whose frequencies move by 2 |z_2|^2 and
     // |z_1|^2 sqrt 2, add 4 |z_1 z_2|^2 each.
     let enclosed = flow("x'' + x + 2*eps*x*y^2; y'' + 2*y + 2*eps*x^2*y", 1, &[]);

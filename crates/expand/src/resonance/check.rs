@@ -83,25 +83,18 @@ fn substituted<A: AmplitudeAlgebra>(
     Ok(all)
 }
 
-/// The energy sum_j weights_j x_j'^2/2 + V along a flow, order by order, V being what is left of the first equation of
-/// `potential` without its acceleration. Its rate of change along the flow must vanish identically.
+/// An energy along a flow, order by order: what is left of the first equation of `energy` without its acceleration. Its rate
+/// of change along the flow must vanish identically.
 ///
 /// # Errors
 /// [`ExpandError::Residual`] with the first order of the energy that changes; those of [`check_flow`].
 pub fn energy<A: AmplitudeAlgebra>(
     algebra: &A,
-    potential: &Equation<A>,
-    weights: &[Rational],
+    energy: &Equation<A>,
     found: &SlowFlow<A::Element>,
 ) -> Result<Vec<A::Element>, ExpandError> {
     let judge = Judge::new(algebra, found);
-    let (velocity, values) = judge.values(potential, found)?;
-    let mut sum = values[potential.root()].clone();
-    for (weight, velocity) in weights.iter().zip(&velocity) {
-        let square = velocity.mul(algebra, velocity, judge.order);
-        let half = Rational::from(weight / 2);
-        sum = sum.add(algebra, &square.map(|c| algebra.scale(c, &half)));
-    }
+    let sum = judge.values(energy, found)?.1[energy.root()].clone();
     let rate = judge.rate(&sum);
     if algebra.interrupted() {
         return Err(ExpandError::Interrupted { order: judge.order });

@@ -247,13 +247,21 @@ impl Subject<'_> {
 
     /// What is said of motions without a force.
     fn of_free_motion(&self) -> String {
-        let family = match self.is_family() {
-            true => {
-                "; energy is conserved, the motions are normal modes of that amplitude, which the first unknown alone would have \
-                 with the same energy at order zero: another exponent 0 lies along their family"
+        let amplitude = match self.rotating.unforced() {
+            Some(free) if free.energy.is_none() => None,
+            Some(free) if !free.definite => Some(
+                "the square of which is a_1^2 + a_2^2, since the signs of the unknowns' energies are not the same or not known",
+            ),
+            _ => {
+                Some("which the first unknown alone would have with the same energy at order zero")
             }
-            false => "",
         };
+        let family = amplitude.map_or(String::new(), |amplitude| {
+            format!(
+                "; energy is conserved, the motions are normal modes of that amplitude, {amplitude}: another exponent 0 lies \
+                 along their family"
+            )
+        });
         format!(
             "no force fixes the phase of a motion: the exponent 0 along it is not listed{family}"
         )
@@ -301,7 +309,7 @@ impl Subject<'_> {
         let mut pairs = [[a, 0.0], [a * y[0], a * y[1]]];
         pairs.rotate_left(c);
         let at = [pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]];
-        let (delta, exponents) = free.drift(system, &at);
+        let (delta, exponents) = free.drift((system, values), &at);
         let point = Point { at: at.to_vec(), exponents, change: None };
         let rate = self
             .rate(self.open()[0].and_then(|k| values[k].as_ref()).map(|it| it.interval().middle()));

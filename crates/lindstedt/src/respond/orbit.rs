@@ -31,6 +31,8 @@ const FASTEST: f64 = 64.0;
 pub(crate) struct Harmonic {
     pub pairs: Vec<Complex<f64>>,
     pub frequency: Option<f64>,
+    /// Of an orbit: by how much an error of the flow over its period moves it, from the least singular value that is not zero.
+    pub condition: f64,
 }
 
 /// A steady state, and the first harmonics of the orbit near it, if one was found.
@@ -114,7 +116,7 @@ impl Harmonic {
             let angle = (off + TAU * f64::from(k)) / weights[c];
             let pairs = self.pairs.iter().zip(weights);
             let pairs = pairs.map(|(z, d)| z * Complex::from_polar(1.0, d * angle)).collect();
-            Self { pairs, frequency: self.frequency }
+            Self { pairs, ..*self }
         };
         let all = (0..16).map(turned);
         if let Some(found) = all.min_by(|a, b| a.away(like).total_cmp(&b.away(like))) {
@@ -134,7 +136,11 @@ impl Subject<'_> {
 
     fn harmonic(&self, state: &State) -> Harmonic {
         let pairs = state.at.chunks_exact(2).map(|w| Complex::new(2.0 * w[0], 2.0 * w[1]));
-        Harmonic { pairs: pairs.collect(), frequency: state.frequency.map(|it| it.value) }
+        Harmonic {
+            pairs: pairs.collect(),
+            frequency: state.frequency.map(|it| it.value),
+            condition: 0.0,
+        }
     }
 
     /// x_j and x_j' at t = 0 to leading order.
@@ -223,6 +229,8 @@ impl Flow {
             let off = DVector::from_fn(n, |k, _| flow.end[k] - at[k]);
             let svd = matrix.svd(true, true);
             let cut = CUT * svd.singular_values.max();
+            let least = svd.singular_values.iter().filter(|x| **x > cut);
+            let condition = least.fold(0.0f64, |most, x| most.max(x.recip()));
             let step = svd.solve(&off, cut).ok()?;
             at.iter_mut().zip(step.iter()).for_each(|(x, d)| *x -= d);
             period -= step.get(n).copied().unwrap_or(0.0);
@@ -231,7 +239,7 @@ impl Flow {
                 return None;
             }
             if change < 1e-14 * size || (change < 1e-10 * size && change > 0.3 * before) {
-                return self.harmonics(&at, period);
+                return Some(Harmonic { condition, ..self.harmonics(&at, period)? });
             }
             before = change;
         }
@@ -277,6 +285,6 @@ impl Flow {
             }
         }
         let frequency = self.period.is_none().then_some(TAU * q / period);
-        Some(Harmonic { pairs: sums, frequency })
+        Some(Harmonic { pairs: sums, frequency, condition: 0.0 })
     }
 }

@@ -60,6 +60,19 @@ pub(super) fn no_amplitude(what: &str) -> Error {
     Refused::usage("no-value-set", message, "--set amplitude=1, or --sweep amplitude=0.1..2").into()
 }
 
+pub(super) fn no_bound() -> Error {
+    let message = "no bound of the steady states follows from the slow flow";
+    Refused::undecided("box", message, "--box AMPLITUDE says how far to look").into()
+}
+
+/// Of motions that are not isolated: nothing that is conserved by the equations tells those of a family apart.
+pub(super) fn no_energy() -> Error {
+    let message = "the lowest order of the slow flow keeps a quadratic form, so that its motions form families, and no energy is \
+                   known that all orders conserve";
+    let hint = "`lindstedt derive` has the slow flow, `lindstedt simulate` motions";
+    Refused::no_answer("no-response", message, hint).into()
+}
+
 pub(super) fn uncoupled(slow: &SlowFlow, order: usize) -> Error {
     if slow.system.forces.is_empty() {
         let message = format!("up to order {order} no resonance ties the phases of the unknowns");

@@ -3,8 +3,8 @@
 use super::answer::{Estimate, Response};
 use super::frequency::{Varying, forcing_frequency, moving_frequency, resonant};
 use super::refusals::{
-    has_numbers, is_unit, is_unset, no_amplitude, no_frame, no_part, no_polynomial, no_resonance,
-    not_weak, not_whole, refuse_zero, strong_force, uncoupled, whole,
+    has_numbers, is_unit, is_unset, no_amplitude, no_bound, no_energy, no_frame, no_part,
+    no_polynomial, no_resonance, not_weak, not_whole, refuse_zero, strong_force, uncoupled, whole,
 };
 use super::{ORDER, Respond, SEARCHES, STEPS, not_determined};
 use crate::grid::Axis;
@@ -400,9 +400,9 @@ impl<'a> Subject<'a> {
             let less = states.map(|states| ROOM * self.falling(at, states, most));
             return Ok((ROOM * most, less.filter(|less| *less < ROOM * most)));
         }
-        let message = "no bound of the steady states follows from the slow flow";
-        let hint = "--box AMPLITUDE says how far to look";
-        Err(Refused::undecided("box", message, hint).into())
+        let kept =
+            self.rotating.unforced().is_some() && !self.slow.quadratic_invariants().is_empty();
+        Err(if kept { no_energy() } else { no_bound() })
     }
 
     /// The largest modulus between two at which every order adds less to the slow flow than the order before, or the least:

@@ -8,8 +8,8 @@ use rug::Rational;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Differences below this part of an amplitude, divided by |eps|, are those of the integration: an orbit is fixed by rates of
-/// order eps.
+/// Differences below this part of an amplitude, divided by |eps| and multiplied by the condition of the orbit, are those of the
+/// integration: an orbit is fixed by rates of order eps, or less.
 const RESOLVED: f64 = 1e-15;
 /// The observed order may be less than N by so much.
 const TOLERANCE: f64 = 0.1;
@@ -69,10 +69,11 @@ pub struct SteadyDifference {
     /// That of the frequencies, without a force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency: Option<Estimate>,
-    /// The slope of the first harmonics a_j e^(i phi_j); nothing where the difference is that of the integration.
+    /// The slope of the first harmonics a_j e^(i phi_j), or, where their difference is that of the integration, one less than
+    /// that of the frequencies, which differ by O(eps^(N + 1)).
     pub slope: Option<f64>,
     #[serde(skip)]
-    difference: Option<f64>,
+    differences: [Option<f64>; 2],
 }
 
 impl SteadyDifference {
@@ -84,12 +85,12 @@ impl SteadyDifference {
             phase: None,
             frequency: None,
             slope: None,
-            difference: None,
+            differences: [None; 2],
         };
         let Some((state, Some(orbit))) = found else { return line };
         line.orbit = true;
         let size = state.pairs.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let resolved = RESOLVED * (1.0 / small.to_f64().abs()).max(10.0);
+        let resolved = RESOLVED * (1.0 / small.to_f64().abs()).max(10.0).max(orbit.condition);
         let least = resolved * size;
         let shown = |x: f64, least: f64| (x > least).then(|| Estimate { value: rounded(x) });
         let largest =
@@ -103,7 +104,8 @@ impl SteadyDifference {
         line.frequency = frequency.and_then(|(a, b)| shown((a - b).abs(), resolved));
         let difference = pairs().map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         // Of two that far above the error of the integration the slope is right within the tolerance.
-        line.difference = Some(difference).filter(|it| *it > 30.0 * least);
+        let frequency = frequency.map(|(a, b)| (a - b).abs()).filter(|it| *it > 30.0 * resolved);
+        line.differences = [Some(difference).filter(|it| *it > 30.0 * least), frequency];
         line
     }
 }
@@ -154,8 +156,11 @@ impl SteadyStates {
             let mut table: Vec<_> = near.collect();
             for k in 1..table.len() {
                 let [small, before] = [k, k - 1].map(|k| question.small[k].to_f64().abs().ln());
-                let pair = table[k].difference.zip(table[k - 1].difference);
-                table[k].slope = pair.map(|(a, b)| rounded((a / b).ln() / (small - before)));
+                let slope = |of: usize| {
+                    let (a, b) = table[k].differences[of].zip(table[k - 1].differences[of])?;
+                    Some(rounded((a / b).ln() / (small - before) - of as f64))
+                };
+                table[k].slope = slope(0).or_else(|| slope(1));
             }
             let amplitudes = state.0.pairs.iter().map(|z| Estimate { value: z.norm() }).collect();
             let observed_order = table.iter().rev().find_map(|line| line.slope);

@@ -10,14 +10,14 @@ use std::ops::{Add, Mul};
 /// A polynomial: exponents of the variables (missing ones are 0) with coefficients, none of which is zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polynomial {
-    terms: BTreeMap<Vec<u32>, Coefficient>,
+    pub(super) terms: BTreeMap<Vec<u32>, Coefficient>,
 }
 
 /// Any number within a radius of a rational one.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Coefficient {
-    middle: Rational,
-    radius: f64,
+pub(super) struct Coefficient {
+    pub(super) middle: Rational,
+    pub(super) radius: f64,
 }
 
 impl Coefficient {
@@ -83,6 +83,14 @@ impl Polynomial {
             (all.chain(exponents.iter().copied()).collect(), c.clone())
         };
         Self { terms: self.terms.iter().map(moved).collect() }
+    }
+
+    /// Whether both are single terms, one a positive number times the other.
+    #[must_use]
+    pub fn is_positive_times(&self, other: &Self) -> bool {
+        let single = |p: &Self| p.terms.len() == 1;
+        let sign = |p: &Self| p.terms.values().all(|c| c.middle > 0);
+        single(self) && self.terms.keys().eq(other.terms.keys()) && sign(self) == sign(other)
     }
 
     /// The derivative by the variable i.

@@ -12,9 +12,11 @@
 //!
 //! Where an energy E_1 |w_1|^2 + E_2 |w_2|^2 + ... is conserved (Lyapunov 1907: normal modes), such motions are families of one
 //! parameter: the balance of energy makes one equation follow from the others, up to terms beyond the order of a truncated
-//! flow. In its place the amplitude A of the family is given, E_1 A^2 = 4 (E_1 |w_1|^2 + E_2 |w_2|^2), and G_j = (i d_j delta + beta) w_j:
+//! flow. In its place the amplitude A of the family is given, E_1 A^2 = 4 (E_1 |w_1|^2 + E_2 |w_2|^2), or A^2 = 4 (|w_1|^2 + |w_2|^2)
+//! where E_1 and E_2 are not known to have one sign, and G_j = (i d_j delta + beta E_j) w_j (Munoz-Almaraz et al. 2003): the
+//! balance is beta (E_1^2 |w_1|^2 + E_2^2 |w_2|^2) = 0, so that beta vanishes, up to those terms.
 //!
-//!   g_o = (i (d_o/d_c) Im(g_c) + Re g_c) y.
+//!   E_c g_o = (i (d_o/d_c) E_c Im(g_c) + E_o Re g_c) y.
 
 use super::branch::follow;
 use super::krawczyk::newton;
@@ -39,6 +41,8 @@ pub struct FreePhase {
     pub parameters: Vec<String>,
     /// E_1 and E_2 of families, in the parameters.
     pub energy: Option<[Polynomial; 2]>,
+    /// Whether they are of one sign, so that A is measured by them.
+    pub definite: bool,
 }
 
 /// A branch of such motions.
@@ -91,14 +95,17 @@ impl FreePhase {
         let times_y =
             |p: &Polynomial, q: &Rational| p * &Polynomial::constant(q * scales[1].clone());
         let ratio = Rational::from(&self.weights[1 - c] / &self.weights[c]);
-        let turn = times_y(&of_gauge[1], &ratio);
         let [eta_re, eta_im] = [0, 1].map(Polynomial::variable);
-        re = re + &(&turn * &eta_im);
-        im = im + &(&times_y(&of_gauge[1], &-ratio) * &eta_re);
-        let Some(energy) = &self.energy else {
+        let energy = self.energy.as_ref().map(|all| all.each_ref().map(|e| e.after(3)));
+        let scale = energy.as_ref().map_or(Polynomial::constant(1.into()), |e| e[c].clone());
+        let turn = times_y(&(&scale * &of_gauge[1]), &ratio);
+        let minus = Polynomial::constant((-1).into());
+        re = (&scale * &re) + &(&turn * &eta_im);
+        im = (&scale * &im) + &(&minus * &(&turn * &eta_re));
+        let (Some(energy), Some(measure)) = (&energy, &self.measure()) else {
             return Some(Flow::of_rows(vec![of_gauge[0].clone(), re, im], self.parameters.clone()));
         };
-        let growth = times_y(&of_gauge[0], &Rational::from(-1));
+        let growth = times_y(&(&energy[1 - c] * &of_gauge[0]), &Rational::from(-1));
         re = re + &(&growth * &eta_re);
         im = im + &(&growth * &eta_im);
         let s = Polynomial::variable(2);
@@ -107,8 +114,15 @@ impl FreePhase {
         let squares = [Polynomial::constant(1.into()), other];
         let squares =
             squares.map(|y| &y * &(&(&s * &s) * &Polynomial::constant(scales[0].clone().square())));
-        let size = self.size(energy, 3, [&squares[c], &squares[1 - c]]);
+        let size = self.size(measure, 3, [&squares[c], &squares[1 - c]]);
         Some(Flow::of_rows(vec![re, im, size], self.parameters.clone()))
+    }
+
+    /// E_1 and E_2 by which A is measured: 1 where they are of no one sign.
+    fn measure(&self) -> Option<[Polynomial; 2]> {
+        let one = || Polynomial::constant(1.into());
+        let energy = self.energy.as_ref()?;
+        Some(if self.definite { energy.clone() } else { [one(), one()] })
     }
 
     /// E_1 |w_1|^2 + E_2 |w_2|^2 - E_1 A^2/4, the parameters being the variables from `first` on.
@@ -127,7 +141,7 @@ impl FreePhase {
     /// A of a motion of a family.
     #[must_use]
     pub fn amplitude(&self, values: &[Option<Value>], w: &[f64]) -> Option<f64> {
-        let rows = System::new(self.energy.as_ref()?, values).values(&[] as &[f64]);
+        let rows = System::new(&self.measure()?, values).values(&[] as &[f64]);
         let square =
             w[0].powi(2) + w[1].powi(2) + rows[1] / rows[0] * (w[2].powi(2) + w[3].powi(2));
         Some(2.0 * square.sqrt())
@@ -137,8 +151,8 @@ impl FreePhase {
     /// d_2 |w_2|^2 Im(conj(w_1) G_1) - d_1 |w_1|^2 Im(conj(w_2) G_2), which vanish there. Nothing where they have common zeros.
     #[must_use]
     pub fn bound(&self, values: &[Option<Value>]) -> Option<f64> {
-        if let Some(energy) = &self.energy {
-            let rows = System::new(energy, values).values(&[] as &[f64]);
+        if let Some(measure) = &self.measure() {
+            let rows = System::new(measure, values).values(&[] as &[f64]);
             let amplitude = values.last()?.as_ref()?.interval().above();
             let most = (rows[0] / rows[1]).sqrt().max(1.0) * amplitude / 2.0;
             return (most.is_finite() && most > 0.0).then_some(most * (1.0 + 1e-9));
@@ -194,14 +208,18 @@ impl FreePhase {
 
     /// delta of a motion w, and the exponents of the deviations from it but those that are 0 for all: one along the free
     /// phase, and of families one along them; there the others are a pair, its square half the trace of the square.
-    /// `system` is G in w and a parameter that has no value, if there is one.
+    /// `system` is G in w and a parameter that has no value, if there is one, which follows w in the list.
     #[must_use]
-    pub fn drift(&self, system: &System, w: &[f64]) -> (f64, Vec<Complex<f64>>) {
-        let (values, slopes) = system.derivatives(w);
+    pub fn drift(
+        &self,
+        (system, values): (&System, &[Option<Value>]),
+        w: &[f64],
+    ) -> (f64, Vec<Complex<f64>>) {
+        let (rates, slopes) = system.derivatives(w);
         let weights = self.weights.each_ref().map(Rational::to_f64);
         let square = |c: usize| w[2 * c].powi(2) + w[2 * c + 1].powi(2);
         let c = usize::from(square(1) > square(0));
-        let [x, y, p, q] = [w[2 * c], w[2 * c + 1], values[2 * c], values[2 * c + 1]];
+        let [x, y, p, q] = [w[2 * c], w[2 * c + 1], rates[2 * c], rates[2 * c + 1]];
         let delta = (x * q - y * p) / square(c) / weights[c];
         let growth = (x * p + y * q) / square(c);
         let rows = slopes.chunks_exact(system.variables()).flat_map(|row| &row[..4]);
@@ -210,8 +228,9 @@ impl FreePhase {
             slopes[8 * j + 2 * j + 1] += delta * d;
             slopes[8 * j + 4 + 2 * j] -= delta * d;
         }
-        if self.energy.is_some() {
-            (0..4).for_each(|k| slopes[5 * k] -= growth);
+        if let Some(energy) = &self.energy {
+            let energy = System::new(energy, values).values(&w[4..]);
+            (0..4).for_each(|k| slopes[5 * k] -= growth * energy[k / 2] / energy[c]);
             let entry = |i: usize, j: usize| slopes[4 * i + j] * slopes[4 * j + i];
             let trace: f64 = (0..16).map(|k| entry(k / 4, k % 4)).sum();
             let root = Complex::new(0.5 * trace, 0.0).sqrt();
@@ -226,7 +245,7 @@ impl FreePhase {
         (delta, exponents)
     }
 
-    /// G_j - (i d_j delta + beta) w_j, Im w_c, and of families the condition of the energy, in w, delta (and beta): all of them
+    /// G_j - (i d_j delta + beta E_j) w_j, Im w_c, and of families the condition of the energy, in w, delta (and beta): all of them
     /// vanish at motions, isolated where w_c is not zero.
     fn unfolded(&self, c: usize) -> Flow {
         let extra = 1 + usize::from(self.energy.is_some());
@@ -235,13 +254,23 @@ impl FreePhase {
                 parameters: vec![0; extra].into_iter().chain(term.parameters.clone()).collect(),
                 ..term.clone()
             };
-            let own = |k: usize, re: Rational, im: Rational| {
-                let (mut amplitudes, mut parameters) = (vec![0; 4], vec![0; extra]);
-                (amplitudes[2 * j], parameters[k]) = (1, 1);
-                ComplexTerm { amplitudes, parameters, re, im, radius: 0.0 }
+            let mut amplitudes = vec![0; 4];
+            amplitudes[2 * j] = 1;
+            let turn = ComplexTerm {
+                amplitudes: amplitudes.clone(),
+                parameters: vec![1],
+                re: Rational::new(),
+                im: Rational::from(-&self.weights[j]),
+                radius: 0.0,
             };
-            let turn = own(0, Rational::new(), Rational::from(-&self.weights[j]));
-            let growth = (1..extra).map(|k| own(k, Rational::from(-1), Rational::new()));
+            let energy = self.energy.iter().flat_map(|energy| &energy[j].terms);
+            let growth = energy.map(|(exponents, c)| ComplexTerm {
+                amplitudes: amplitudes.clone(),
+                parameters: [0, 1].into_iter().chain(exponents.iter().copied()).collect(),
+                re: Rational::from(-&c.middle),
+                im: Rational::new(),
+                radius: c.radius,
+            });
             self.equations[j].iter().map(shifted).chain([turn]).chain(growth).collect()
         };
         let names: Vec<&str> = [""; 2][..extra]
@@ -256,7 +285,7 @@ impl FreePhase {
             (&x * &x) + &(&y * &y)
         };
         let squares = [square(0), square(1)];
-        let size = self.energy.as_ref().map(|e| self.size(e, 4 + extra, squares.each_ref()));
+        let size = self.measure().map(|e| self.size(&e, 4 + extra, squares.each_ref()));
         rows.extend(size);
         Flow::of_rows(rows, self.parameters.clone())
     }
@@ -381,7 +410,7 @@ impl FreePhase {
                 ]
             };
             let mut start = [turned(0), turned(1)].concat();
-            start.push(self.drift(flow, point).0);
+            start.push(self.drift((flow, values), point).0);
             start.resize(n, 0.0);
             start.push(point[4]);
             let unknowns = if self.energy.is_some() { 0 } else { 4 };
@@ -413,7 +442,7 @@ impl FreePhase {
         for point in &mut branch.points {
             let unfolded = point.clone();
             shorten(&mut point.at, own.unknowns());
-            let (delta, exponents) = self.drift(flow, &point.at);
+            let (delta, exponents) = self.drift((flow, values), &point.at);
             point.exponents = exponents;
             rates.push(delta);
             // The exponent 0 along the phase makes the sum with another vanish at folds.

@@ -318,8 +318,7 @@ impl Board<'_> {
                 .words(format!("Quadratic invariant: Q is conserved by f_1{last}, identically."));
         }
         page.words(format!(
-            "Energy: the equations derive from a potential; H_0 + H_1*{} + ... is conserved by the flow, identically at orders 0 \
-             to {}.",
+            "Energy: H_0 + H_1*{} + ... is conserved by the flow, identically at orders 0 to {}.",
             self.0.problem.small,
             orders.len() - 1
         ))
