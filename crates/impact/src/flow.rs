@@ -99,11 +99,9 @@ impl<S: Real> Scratch<S> {
             }
             g.re = g.re + driven.im.clone() * alpha;
             g.im = g.im - driven.re.clone() * alpha;
-            for (lambda, w) in self.terms[1..].iter().zip(self.coupled.iter().rev()) {
-                g = g - lambda.clone() * w;
-            }
+            let minus = (-g).plus_products(self.terms[1..].iter().zip(self.coupled.iter().rev()));
             // 1/(2 i alpha)
-            let next = Complex::new(g.im * &half_inverse, -(g.re * &half_inverse));
+            let next = Complex::new(-(minus.im * &half_inverse), minus.re * &half_inverse);
             if m < order {
                 e = self.continue_with(&next, driven, time);
                 self.delayed.push(e.clone());
@@ -121,10 +119,8 @@ impl<S: Real> Scratch<S> {
         let weight = time.integer(m);
         self.coupled.push(driven + next);
         self.slopes.push(next.scaled(&weight));
-        let mut sum = Complex::real(time.integer(0));
-        for (slope, e) in self.slopes.iter().zip(self.delayed.iter().rev()) {
-            sum = sum + slope.clone() * e;
-        }
+        let sum = Complex::real(time.integer(0))
+            .plus_products(self.slopes.iter().zip(self.delayed.iter().rev()));
         sum.scaled(&-(time.clone() / weight))
     }
     /// The flow of the sum of all terms (eps = 1).

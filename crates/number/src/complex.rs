@@ -47,6 +47,17 @@ impl<S: Real> Complex<S> {
     pub fn modulus(&self) -> S {
         self.norm_squared().sqrt()
     }
+    /// z + z_1 w_1 + z_2 w_2 + ...
+    #[inline(always)]
+    #[must_use]
+    pub fn plus_products<'a>(self, pairs: impl Iterator<Item = (&'a Self, &'a Self)>) -> Self
+    where
+        S: 'a,
+    {
+        let parts = pairs.map(|(z, w)| [[&z.re, &z.im], [&w.re, &w.im]]);
+        let [re, im] = S::add_products([self.re, self.im], parts);
+        Self { re, im }
+    }
     /// 1/z; not finite where z may be zero.
     #[must_use]
     pub fn inverse(&self) -> Self {

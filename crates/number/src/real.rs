@@ -81,6 +81,22 @@ pub trait Real:
     fn holds(&self, property: impl Fn(f64) -> bool) -> Option<bool> {
         Some(property(self.to_f64()))
     }
+    /// z + z_1 w_1 + z_2 w_2 + ..., complex numbers by their real and imaginary parts; balls are added with one rounding per
+    /// product of parts.
+    #[inline(always)]
+    fn add_products<'a>(
+        [mut re, mut im]: [Self; 2],
+        pairs: impl Iterator<Item = [[&'a Self; 2]; 2]>,
+    ) -> [Self; 2]
+    where
+        Self: 'a,
+    {
+        for [[a, b], [c, d]] in pairs {
+            re = re + (a.clone() * c - b.clone() * d);
+            im = im + (a.clone() * d + b.clone() * c);
+        }
+        [re, im]
+    }
     /// Whether x is proved positive.
     #[inline(always)]
     fn is_positive(&self) -> bool {
@@ -242,6 +258,20 @@ impl Neg for Certified {
 }
 
 impl Real for Certified {
+    fn add_products<'a>(
+        [re, im]: [Self; 2],
+        pairs: impl Iterator<Item = [[&'a Self; 2]; 2]>,
+    ) -> [Self; 2] {
+        let (mut squares, mut minus, mut mixed) = (Vec::new(), Vec::new(), Vec::new());
+        for [[a, b], [c, d]] in pairs {
+            squares.push((&a.value, &c.value));
+            minus.push((&b.value, &d.value));
+            mixed.extend([(&a.value, &d.value), (&b.value, &c.value)]);
+        }
+        let of = |pairs: &[_]| re.with(re.balls.sum_of_products(pairs));
+        let [squares, minus, mixed] = [of(&squares), of(&minus), of(&mixed)];
+        [re + (squares - minus), im + mixed]
+    }
     fn integer(&self, n: i64) -> Self {
         self.with(self.balls.from_i64(n))
     }
