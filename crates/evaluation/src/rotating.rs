@@ -43,8 +43,8 @@ pub struct Rotating {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NoFrame {
-    /// There is no force, and not two unknowns.
-    NoForce,
+    /// There is no force, and not two but so many unknowns.
+    NoForce(usize),
     /// The rate of a force is no number.
     NoNumber,
     /// Forces of different detunings act on the same amplitudes.
@@ -62,7 +62,7 @@ pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Result<Rotating, 
     let first = match (rates.first(), &system.frequencies[..]) {
         (Some(rate), _) => rate,
         (None, [first, _]) => first,
-        (None, _) => return Err(NoFrame::NoForce),
+        (None, all) => return Err(NoFrame::NoForce(all.len())),
     };
     let relations = Relations::of(slow, &slow.flow, order);
     let free = |nu: &Rational| {

@@ -152,15 +152,19 @@ fn refusals_have_their_reason() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("resonance"));
 }
 
-/// Where limit cycles are not listed it is said why: irrational coefficients, a symbol; and of a double zero, by `evaluate` too.
+/// The one limit cycle is listed whatever the coefficients are. Where several are not it is said why: irrational coefficients, a symbol;
+/// and of a double zero, by `evaluate` too.
 #[test]
 fn cycles_that_are_not_listed_are_explained() {
     let free = ["--normalisation", "free", "--order", "1"];
     let told = |equation: &str| program::text(&[&["derive", equation][..], &free].concat());
     for (equation, words) in [
-        ("x'' + 2*x + eps*x'*(x^2 - 1)", "with the Floquet exponent A_1'(a_0)*eps + ..."),
-        ("x'' + x + eps*(x^2*x' - x') + eps*x(t - 1)", "for the coefficients are irrational"),
-        ("x'' + omega0^2*x + eps*x'*(x^2 - 1)", "not listed without the values of omega0"),
+        ("x'' + 2*x + eps*x'*(x^4 - x^2 - 1)", "with the Floquet exponent A_1'(a_0)*eps + ..."),
+        ("x'' + x + eps*(x^4*x' - x') + eps*x(t - 1)", "for the coefficients are irrational"),
+        ("x'' + omega0^2*x + eps*x'*(x^4 - x^2 - 1)", "not listed without the values of omega0"),
+        ("x'' + omega0^2*x + eps*x'*(x^2 - mu)", "one where a_0^2 > 0"),
+        ("x'' + omega0^2*x + eps*x'*(x^2 - mu)", "  a^2 = 4*mu\n"),
+        ("x'' + x + eps*(x^2*x' - x') + eps*x(t - 1)", "  a^2 = 7.36588393923158"),
     ] {
         let text = told(equation);
         assert!(text.contains(words), "{equation}: {text}");

@@ -13,9 +13,9 @@
 //! the other one is 0, along psi. The frequency is psi' there. At a multiple root of R_k there is no such
 //! series (cycles may meet): it is named.
 
-use super::AveragedExpansion;
+use super::{AveragedExpansion, Coefficient};
 use crate::error::DerivationError as Error;
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
 use lindstedt_coeff::print::{Style, Term, parenthesize, power, print_sum};
 use lindstedt_number::Number;
@@ -138,25 +138,66 @@ impl Cycle {
     }
 }
 
+/// The limit cycle of rates of which R_k has one zero r = a_0^2 other than 0, by formulas or enclosures: where r > 0.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct SingleCycle {
+    /// k: the first order with A_k != 0.
+    pub leading_order: usize,
+    /// Orders 0, 1, ... of a^2.
+    pub squared_amplitude: Vec<Coefficient>,
+    /// Orders 0, 1, ... of the Floquet exponent per unit of t.
+    #[serde(rename = "floquet_exponent")]
+    pub exponent: Vec<Coefficient>,
+    /// Orders 0, 1, ... of the frequency.
+    pub frequency: Vec<Coefficient>,
+}
+
 /// Coefficients of a polynomial in rho.
-type InSquare = Vec<Rational>;
+type InSquare<E> = Vec<E>;
 
 /// f/a^offset as a polynomial in a^2, if it is one.
-fn in_square(f: &AmplitudePolynomial<Rational>, offset: i32) -> Option<InSquare> {
+fn in_square<K: Ring>(
+    ring: &K,
+    f: &AmplitudePolynomial<K::Element>,
+    offset: i32,
+) -> Option<InSquare<K::Element>> {
     let mut list = InSquare::new();
     for (AmplitudePower(exponent), c) in f.terms() {
         let twice = usize::try_from(exponent - offset).ok().filter(|e| e % 2 == 0)?;
-        list.resize(list.len().max(twice / 2 + 1), Rational::new());
-        list[twice / 2] += c;
+        list.resize(list.len().max(twice / 2 + 1), ring.zero());
+        ring.add_assign(&mut list[twice / 2], c);
     }
     Some(list)
 }
 
 /// What the cycles come from: R_n and B_n, from n = 0.
-struct Rates {
-    amplitude: Vec<InSquare>,
-    phase: Vec<InSquare>,
+struct Rates<E> {
+    amplitude: Vec<InSquare<E>>,
+    phase: Vec<InSquare<E>>,
     leading_order: usize,
+}
+
+/// a^2, the Floquet exponent and the frequency, order by order.
+type CycleSeries<E> = [Vec<E>; 3];
+
+/// The one cycle of R_k = rho^m (c_0 + c_1 rho) over any ring with its k; nothing where R_k has another form, or c_1 cannot be divided
+/// by or told from zero.
+pub(super) fn single_cycle<K: RationalAlgebra>(
+    ring: &K,
+    frequency: &K::Element,
+    expansion: &AveragedExpansion<K::Element>,
+) -> Option<(usize, CycleSeries<K::Element>)> {
+    let rates = Rates::of(ring, frequency, expansion)?;
+    let leading = &rates.amplitude[rates.leading_order];
+    let known = |c: &&K::Element| ring.is_zero(c) || !ring.may_vanish(c);
+    let mut others = leading.iter().filter(|c| !ring.is_zero(c));
+    let ([.., constant, slope], 2) = (&leading[..], others.by_ref().count()) else { return None };
+    if !leading.iter().all(|c| known(&c)) || ring.is_zero(constant) {
+        return None;
+    }
+    let root = ring.neg(&ring.mul(constant, &ring.reciprocal(slope)?));
+    Some((rates.leading_order, series(ring, &rates, root)?))
 }
 
 /// The cycles, their coefficients with so many digits; nothing where every A_n vanishes, none depends on
@@ -166,20 +207,8 @@ pub(super) fn cycles(
     expansion: &AveragedExpansion<Rational>,
     digits: usize,
 ) -> Result<Option<Cycles>, Error> {
-    let in_squares = |list: &[AmplitudePolynomial<Rational>], offset| {
-        list.iter().map(|f| in_square(f, offset)).collect::<Option<Vec<_>>>()
-    };
-    let amplitude = in_squares(&expansion.amplitude_rate, 1);
-    let (Some(amplitude), Some(mut phase)) = (amplitude, in_squares(&expansion.phase_rate, 0))
-    else {
-        return Ok(None);
-    };
-    if amplitude.iter().all(|r| r.len() < 2) {
-        return Ok(None);
-    }
-    phase[0] = vec![frequency.clone()];
-    let Some(leading_order) = amplitude.iter().position(|r| !r.is_empty()) else { return Ok(None) };
-    let rates = Rates { amplitude, phase, leading_order };
+    let Some(rates) = Rates::of(&Rationals, frequency, expansion) else { return Ok(None) };
+    let leading_order = rates.leading_order;
     let at_zero = |c: &&Rational| c.is_zero();
     let zeros = rates.amplitude[leading_order].iter().take_while(at_zero).count();
     let [mut simple, multiple] = simple_and_multiple(&rates.amplitude[leading_order][zeros..]);
@@ -226,15 +255,47 @@ fn root_of_root(
     Ok(lindstedt_number::certified(exact, digits, value)?)
 }
 
-impl Rates {
+impl<E: Clone> Rates<E> {
+    /// Nothing where every A_n vanishes, none depends on a, or the rates are not of that form.
+    fn of<K: RationalAlgebra<Element = E>>(
+        ring: &K,
+        frequency: &E,
+        expansion: &AveragedExpansion<E>,
+    ) -> Option<Self> {
+        let in_squares = |list: &[AmplitudePolynomial<E>], offset| {
+            list.iter().map(|f| in_square(ring, f, offset)).collect::<Option<Vec<_>>>()
+        };
+        let amplitude = in_squares(&expansion.amplitude_rate, 1)?;
+        let mut phase = in_squares(&expansion.phase_rate, 0)?;
+        if amplitude.iter().all(|r| r.len() < 2) {
+            return None;
+        }
+        phase[0] = vec![frequency.clone()];
+        let leading_order = amplitude.iter().position(|r| !r.is_empty())?;
+        Some(Self { amplitude, phase, leading_order })
+    }
+
+    fn map<T>(&self, f: impl Fn(&E) -> T) -> Rates<T> {
+        let each =
+            |lists: &[InSquare<E>]| lists.iter().map(|p| p.iter().map(&f).collect()).collect();
+        Rates {
+            amplitude: each(&self.amplitude),
+            phase: each(&self.phase),
+            leading_order: self.leading_order,
+        }
+    }
+}
+
+impl Rates<Rational> {
     /// One cycle for every positive root of a factor.
     fn at_roots(&self, modulus: Vec<Rational>, digits: usize) -> Result<Vec<Cycle>, Error> {
         let roots = positive_roots(&modulus);
         let field = Residues::new(modulus);
-        let Some([square, exponent, frequency]) = self.series(&field).filter(|_| !roots.is_empty())
-        else {
-            return Ok(Vec::new());
-        };
+        let over = self.map(|c| field.rational(c));
+        let found = series(&field, &over, field.root()).filter(|_| !roots.is_empty());
+        let Some(found) = found else { return Ok(Vec::new()) };
+        let [square, exponent, frequency] =
+            found.map(|list| list.into_iter().map(trim).collect::<Vec<_>>());
         let mut list = Vec::new();
         for root in roots {
             let modulus = field.modulus();
@@ -260,56 +321,64 @@ impl Rates {
         }
         Ok(list)
     }
+}
 
-    /// a^2, lambda and the frequency over Q\[r\]/m, as far as the orders of the rates reach.
-    fn series(&self, field: &Residues) -> Option<[Vec<Vec<Rational>>; 3]> {
-        let k = self.leading_order;
-        let orders = self.amplitude.len() - k;
-        let slopes: Vec<InSquare> =
-            self.amplitude.iter().map(|r| lindstedt_series::univariate::derivative(r)).collect();
-        let mut square = vec![field.root()];
-        let slope = self.sum(field, &slopes[k..], &square, 1).swap_remove(0);
-        let inverse = field.reciprocal(&slope)?;
-        for n in 1..orders {
-            square.push(field.zero());
-            let gap = self.sum(field, &self.amplitude[k..], &square, n + 1).swap_remove(n);
-            square[n] = field.neg(&field.mul(&gap, &inverse));
-        }
-        let slope = self.sum(field, &slopes[k..], &square, orders);
-        let twice = Series::truncated(square.clone()).map(|c| field.scale(c, &Rational::from(2)));
-        let exponent = twice.mul(field, &Series::truncated(slope), orders - 1).coefficients;
-        let exponent = std::iter::repeat_n(field.zero(), k).chain(exponent).collect();
-        // B_0 does not depend on a.
-        let frequency = self.sum(field, &self.phase, &square, orders + 1);
-        Some([square, exponent, frequency])
+/// a^2, lambda and the frequency over a ring with a zero r of R_k, as far as the orders of the rates reach; nothing where
+/// the slope there cannot be divided by.
+fn series<F: RationalAlgebra>(
+    field: &F,
+    rates: &Rates<F::Element>,
+    root: F::Element,
+) -> Option<CycleSeries<F::Element>> {
+    let k = rates.leading_order;
+    let orders = rates.amplitude.len() - k;
+    let slope = |r: &InSquare<F::Element>| {
+        let term = |(n, c): (u32, &F::Element)| field.scale(c, &Rational::from(n));
+        (1u32..).zip(&r[r.len().min(1)..]).map(term).collect()
+    };
+    let slopes: Vec<InSquare<F::Element>> = rates.amplitude.iter().map(slope).collect();
+    let mut square = vec![root];
+    let slope = sum(field, &slopes[k..], &square, 1).swap_remove(0);
+    let inverse = field.reciprocal(&slope)?;
+    for n in 1..orders {
+        square.push(field.zero());
+        let gap = sum(field, &rates.amplitude[k..], &square, n + 1).swap_remove(n);
+        square[n] = field.neg(&field.mul(&gap, &inverse));
     }
+    let slope = sum(field, &slopes[k..], &square, orders);
+    let twice = Series::truncated(square.clone()).map(|c| field.scale(c, &Rational::from(2)));
+    let exponent = twice.mul(field, &Series::truncated(slope), orders - 1).coefficients;
+    let exponent = std::iter::repeat_n(field.zero(), k).chain(exponent).collect();
+    // B_0 does not depend on a.
+    let frequency = sum(field, &rates.phase, &square, orders + 1);
+    Some([square, exponent, frequency])
+}
 
-    /// The first orders of sum eps^n p_n(rho) along the series of rho; of order 0 of p_n rho is not needed
-    /// where p_0 is constant.
-    fn sum(
-        &self,
-        field: &Residues,
-        list: &[InSquare],
-        square: &[Vec<Rational>],
-        orders: usize,
-    ) -> Vec<Vec<Rational>> {
-        let mut rho = square.to_vec();
-        rho.resize(orders, field.zero());
-        let rho = Series::truncated(rho);
-        let mut sum = vec![field.zero(); orders];
-        for (n, p) in list.iter().enumerate().take(orders) {
-            let constant = |c: &Rational| {
-                let mut list = vec![field.zero(); orders];
-                list[0] = field.rational(c);
-                Series::truncated(list)
-            };
-            let step =
-                |sum: Series<_>, c| sum.mul(field, &rho, orders - 1).add(field, &constant(c));
-            let value = p.iter().rev().fold(constant(&Rational::new()), step);
-            for (total, c) in sum[n..].iter_mut().zip(&value.coefficients) {
-                field.add_assign(total, c);
-            }
+/// The first orders of sum eps^n p_n(rho) along the series of rho; of order 0 of p_n rho is not needed
+/// where p_0 is constant.
+fn sum<F: RationalAlgebra>(
+    field: &F,
+    list: &[InSquare<F::Element>],
+    square: &[F::Element],
+    orders: usize,
+) -> Vec<F::Element> {
+    let mut rho = square.to_vec();
+    rho.resize(orders, field.zero());
+    let rho = Series::truncated(rho);
+    let mut total = vec![field.zero(); orders];
+    for (n, p) in list.iter().enumerate().take(orders) {
+        let constant = |c: F::Element| {
+            let mut list = vec![field.zero(); orders];
+            list[0] = c;
+            Series::truncated(list)
+        };
+        let step = |sum: Series<_>, c: &F::Element| {
+            sum.mul(field, &rho, orders - 1).add(field, &constant(c.clone()))
+        };
+        let value = p.iter().rev().fold(constant(field.zero()), step);
+        for (own, c) in total[n..].iter_mut().zip(&value.coefficients) {
+            field.add_assign(own, c);
         }
-        sum.into_iter().map(trim).collect()
     }
+    total
 }

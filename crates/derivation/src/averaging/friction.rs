@@ -152,6 +152,7 @@ impl HalfTurnProblem {
             symbols: self.names.clone(),
             exact: true,
             cycles: None,
+            single_cycle: None,
             convergence: None,
             description: None,
         })

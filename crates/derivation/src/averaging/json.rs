@@ -31,6 +31,12 @@ enum Printed<'a> {
 const ZERO: Printed<'static> =
     Printed::Zero { exact: "0", decimal: "0", error: (), status: Status::Exact };
 
+impl Serialize for Coefficient {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.number().serialize(serializer)
+    }
+}
+
 /// One term of a rate.
 #[derive(Serialize)]
 struct Term<'a> {
@@ -104,6 +110,9 @@ impl Serialize for Averaging {
         };
         map.serialize_entry("method", &Object(method))?;
         map.serialize_entry("limit_cycles", &self.cycles)?;
+        if let Some(cycle) = &self.single_cycle {
+            map.serialize_entry("single_cycle", cycle)?;
+        }
         map.serialize_entry("convergence", &self.convergence.as_ref().map(Radius::new))?;
         map.serialize_entry("classification", &self.description)?;
         map.end()

@@ -10,7 +10,7 @@ pub mod numbers;
 mod task;
 mod values;
 
-pub use cycles::{Algebraic, Cycle, Cycles, print_series};
+pub use cycles::{Algebraic, Cycle, Cycles, SingleCycle, print_series};
 pub use expansion::AveragedExpansion;
 
 use crate::error::DerivationError as Error;
@@ -64,6 +64,14 @@ pub struct RateTerm {
     pub exponent: i32,
     /// c.
     pub coefficient: Coefficient,
+}
+
+impl RateTerm {
+    /// c a^exponent.
+    #[must_use]
+    pub fn new(exponent: i32, coefficient: Coefficient) -> Self {
+        Self { exponent, coefficient }
+    }
 }
 
 /// A coefficient of an averaged expansion.
@@ -160,6 +168,8 @@ pub struct Averaging {
     /// The limit cycles with their Floquet exponents; nothing where values are missing or irrational, or no
     /// rate of the amplitude depends on it otherwise than linearly.
     pub cycles: Option<Cycles>,
+    /// Where values are missing or irrational and A_k has one zero a_0^2: its limit cycle.
+    pub single_cycle: Option<SingleCycle>,
     /// Where the averaged series of an impact oscillator converges, with a value for every parameter.
     pub convergence: Option<Convergence>,
     /// What the equation is made of.

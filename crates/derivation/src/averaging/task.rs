@@ -1,10 +1,12 @@
 //! One averaging: the field its coefficients are taken from, rational numbers, symbols or enclosures.
 
 use super::coefficients::{Coefficients, with_angles};
-use super::cycles::cycles;
+use super::cycles::{cycles, single_cycle};
 use super::formulas::Formulas;
 use super::values::{Given, constant, enclosed};
-use super::{AveragedExpansion, Averaging, AveragingSettings, Coefficient, Formula, RateTerm};
+use super::{
+    AveragedExpansion, Averaging, AveragingSettings, Coefficient, Formula, RateTerm, SingleCycle,
+};
 use crate::error::DerivationError as Error;
 use crate::limits::{check_delays, refuse_high_powers, refuse_taken, unknown_parameter};
 use crate::resonance::ResonanceError;
@@ -335,9 +337,34 @@ impl<'a> Task<'a> {
             symbols: self.names.iter().filter(|n| self.value(n).is_none()).cloned().collect(),
             exact,
             cycles: None,
+            single_cycle: None,
             convergence: None,
             description: None,
         })
+    }
+
+    /// The one limit cycle of what is not over Q.
+    fn single_cycle<K: RationalAlgebra>(
+        &self,
+        ring: &K,
+        over: &Over<K>,
+        may_be_positive: &dyn Fn(&K::Element) -> bool,
+        coefficient: &dyn Fn(K::Element) -> Result<Coefficient, Error>,
+    ) -> Result<Option<SingleCycle>, Error> {
+        if self.problem.impact.is_some() || self.settings.stop.asked() {
+            return Ok(None);
+        }
+        let found = single_cycle(ring, &over.frequency, &over.expansion);
+        let found = found.filter(|(_, [square, ..])| may_be_positive(&square[0]));
+        let Some((leading_order, [square, exponent, frequency])) = found else { return Ok(None) };
+        let all =
+            |list: Vec<K::Element>| list.into_iter().map(coefficient).collect::<Result<_, _>>();
+        Ok(Some(SingleCycle {
+            leading_order,
+            squared_amplitude: all(square)?,
+            exponent: all(exponent)?,
+            frequency: all(frequency)?,
+        }))
     }
 
     /// Over Q; nothing when a square root or an angle is irrational.
@@ -464,7 +491,9 @@ impl<'a> Task<'a> {
             let field = Arc::clone(&field);
             Ok(Coefficient::Formula(Formula::new(move |style| field.print(&c, style))))
         };
-        self.finish(over, true, &formula)
+        let positive = |c: &_| field.as_rational(c).is_none_or(|q| q > 0);
+        let single_cycle = self.single_cycle(&*field, &over, &positive, &formula)?;
+        Ok(Averaging { single_cycle, ..self.finish(over, true, &formula)? })
     }
 
     /// With enclosures.
@@ -491,7 +520,13 @@ impl<'a> Task<'a> {
             wanted + 40 + 8 * u32::try_from(self.settings.order).unwrap_or(u32::MAX / 16);
         loop {
             let over = self.over_balls(Balls::new(bits), observer)?;
-            let result = self.finish(over, false, &|c| enclosed(&c.0, digits, bits));
+            let number = |c: Enclosure| enclosed(&c.0, digits, bits);
+            let positive = |c: &Enclosure| c.0.lower() > 0;
+            let ring = BallRing { balls: Balls::new(bits) };
+            let single = self.single_cycle(&ring, &over, &positive, &number);
+            let result = single.and_then(|single_cycle| {
+                Ok(Averaging { single_cycle, ..self.finish(over, false, &number)? })
+            });
             match result {
                 Err(Error::NotEnoughBits { .. })
                     if bits < MOST_BITS && !self.settings.stop.asked() =>

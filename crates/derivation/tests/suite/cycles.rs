@@ -1,16 +1,89 @@
 //! Limit cycles of averaged equations and their Floquet exponents.
 
 use lindstedt_coeff::print::Style;
-use lindstedt_derivation::averaging::{AveragingSettings, Cycles, average, print_series};
+use lindstedt_derivation::averaging::{
+    Algebraic, Averaging, AveragingSettings, Coefficient, Cycles, average, print_series,
+};
 use lindstedt_derivation::numeric::{self, Tier};
 use lindstedt_derivation::{Settings, derive};
 use lindstedt_equation::{Condition, Quantity};
 use lindstedt_problem_file::ProblemFile;
 
-fn cycles(equation: &str, order: usize) -> Cycles {
+fn averaged(equation: &str, order: usize) -> Averaging {
     let problem = ProblemFile::parse(&format!("equation = {equation:?}")).unwrap().problem;
     let settings = AveragingSettings { order, digits: 12, ..AveragingSettings::default() };
-    average(&problem, &settings, &mut |_| true).unwrap().cycles.unwrap()
+    average(&problem, &settings, &mut |_| true).unwrap()
+}
+
+fn cycles(equation: &str, order: usize) -> Cycles {
+    averaged(equation, order).cycles.unwrap()
+}
+
+/// x = sqrt(mu/beta) y, eps' = eps mu make van der Pol's equation of this one, whatever the symbols are. With sqrt(2) in the place of
+/// omega_0, eps' = eps/sqrt(2) in the time t sqrt(2).
+#[test]
+fn one_cycle_in_symbols_and_balls() {
+    let known = cycles("x'' + x = eps*(1 - x^2)*x'", 6);
+    let [known] = &known.cycles[..] else { panic!("one cycle") };
+    let found = averaged("x'' + x = eps*(mu - beta*x^2)*x'", 6);
+    assert!(found.cycles.is_none());
+    let found = found.single_cycle.unwrap();
+    let text = |c: &Coefficient| match c {
+        Coefficient::Number(number) => number.exact.clone().unwrap(),
+        Coefficient::Formula(formula) => formula.text().to_owned(),
+        _ => panic!("a formula"),
+    };
+    let with = |c: &Algebraic, factor: &dyn Fn(usize) -> String, n: usize| {
+        let exact = c.number.exact.clone().unwrap();
+        match &*factor(n) {
+            _ if exact == "0" => exact,
+            "" => exact,
+            factor if exact == "1" || exact == "-1" => exact.replace('1', factor),
+            factor => format!("{exact}*{factor}"),
+        }
+    };
+    let power = |n: usize| match n {
+        0 => String::new(),
+        1 => "mu".to_owned(),
+        n => format!("mu^{n}"),
+    };
+    let over_beta = |n: usize| format!("beta^(-1)*{}", power(n + 1));
+    let lists = [
+        (
+            &found.squared_amplitude,
+            &known.squared_amplitude,
+            &over_beta as &dyn Fn(usize) -> String,
+        ),
+        (&found.frequency, &known.frequency, &power),
+        (&found.exponent, &known.exponent, &power),
+    ];
+    for (found, known, factor) in lists {
+        let expected: Vec<_> = known.iter().enumerate().map(|(n, c)| with(c, factor, n)).collect();
+        assert_eq!(found.iter().map(text).collect::<Vec<_>>(), expected);
+    }
+    let enclosed = averaged("x'' + 2*x = eps*(1 - x^2)*x'", 6).single_cycle.unwrap();
+    let lists = [
+        (&enclosed.squared_amplitude, &known.squared_amplitude, 0),
+        (&enclosed.frequency, &known.frequency, 1),
+        (&enclosed.exponent, &known.exponent, 1),
+    ];
+    for (found, known, time) in lists {
+        for (n, (found, known)) in (0i32..).zip(found.iter().zip(known)) {
+            let Coefficient::Number(found) = found else { panic!("a number") };
+            let value: f64 = known.number.decimal.parse().unwrap();
+            let expected = value * f64::sqrt(2.0).powi(time - n);
+            assert!((found.decimal.parse::<f64>().unwrap() - expected).abs() < 1e-11);
+        }
+    }
+    // Two zeros, one that is not positive, none.
+    for equation in [
+        "x'' + x = eps*(mu - x^2 - x^4)*x'",
+        "x'' + 2*x = eps*(1 + x^2)*x'",
+        "x'' + x = -eps*(1 + 2*x^2)*x' + eps*mu*x^3",
+        "x'' + x = eps*mu*x'",
+    ] {
+        assert!(averaged(equation, 2).single_cycle.is_none(), "{equation}");
+    }
 }
 
 /// lambda = -eps <1 - x^2> over the period, from the known solution of van der Pol's equation.

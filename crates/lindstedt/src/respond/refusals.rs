@@ -23,9 +23,13 @@ pub(super) fn is_unset(error: &Error, name: &str) -> bool {
 
 pub(super) fn no_frame(why: NoFrame) -> Error {
     let (message, hint) = match why {
-        NoFrame::NoForce => (
-            "without a force the phase of a steady state is free: the motions that lock are looked for of two unknowns",
-            "of one unknown `lindstedt evaluate` has the periodic motions; `derive --normalisation free` has the slow flow, `derive --mode` normal modes, `simulate` the motions",
+        NoFrame::NoForce(1) => (
+            "without a force the phase of a motion is free, and no state is steady",
+            "`lindstedt evaluate` has the periodic motions, `derive --normalisation free` the slow flow with its limit cycles",
+        ),
+        NoFrame::NoForce(_) => (
+            "without a force the phases of motions are free: those that lock are looked for of two unknowns",
+            "`lindstedt derive` has the slow flow, `derive --mode` normal modes, `simulate` the motions",
         ),
         _ => (
             "forces of different detunings act on the same amplitudes: these are steady in no frame, they beat",

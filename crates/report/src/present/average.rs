@@ -3,7 +3,7 @@
 use super::{Present, both, classification, condition_text, equation, head};
 use crate::{Document, Formula};
 use lindstedt::Answer;
-use lindstedt::averaging::{Averaging, Coefficient, Cycles, RateTerm, print_series};
+use lindstedt::averaging::{Averaging, Coefficient, Cycles, RateTerm, SingleCycle, print_series};
 use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::equation::Condition;
 use std::borrow::Cow;
@@ -37,14 +37,15 @@ impl Present for Answer<Averaging> {
                 if n > 0 || name == "B" {
                     let terms = rates.get(n).map_or(&[][..], Vec::as_slice);
                     page = page.formula(both(|style| {
-                        format!("{} = {}", indexed(name, n, style), rate(terms, style))
+                        format!("{} = {}", indexed(name, n, style), rate(terms, "a", style))
                     }));
                 }
             }
         }
-        page = match &result.cycles {
-            Some(found) => cycles(page, found, &problem.small),
-            None => not_listed(result).into_iter().fold(page, Document::words),
+        page = match (&result.cycles, &result.single_cycle) {
+            (Some(found), _) => cycles(page, found, &problem.small),
+            (None, Some(cycle)) => single_cycle(page, cycle, &problem.small),
+            (None, None) => not_listed(result).into_iter().fold(page, Document::words),
         };
         page.words(residual(result))
     }
@@ -123,6 +124,30 @@ fn cycles(mut page: Document, found: &Cycles, small: &str) -> Document {
     page
 }
 
+/// The limit cycle whose amplitude is a formula or enclosed.
+fn single_cycle(mut page: Document, found: &SingleCycle, small: &str) -> Document {
+    let k = found.leading_order;
+    page = page.words(format!(
+        "Limit cycle: one where a_0^2 > 0, at the simple zero a_0 of A_{k}(a); stable for small {small} > 0 where the first term of \
+         lambda, the Floquet exponent per unit of t, is negative:"
+    ));
+    let series: [(&dyn Fn(Style) -> String, _); 3] = [
+        (&|style| power("a", 2, style), &found.squared_amplitude),
+        (&|style| plain("omega", style), &found.frequency),
+        (&|style| plain("lambda", style), &found.exponent),
+    ];
+    for (name, series) in series {
+        let zero = |c: &&(i32, &Coefficient)| matches!(c.1, Coefficient::Number(n) if n.exact.as_deref() == Some("0"));
+        let term = |(exponent, c): (i32, &Coefficient)| RateTerm::new(exponent, c.clone());
+        let terms: Vec<_> = (0..).zip(series).filter(|c| !zero(&c)).map(term).collect();
+        page = page.formula(both(|style| {
+            let sum = rate(&terms, &plain(small, style), style);
+            format!("{} = {}", name(style), shortened(sum, style))
+        }));
+    }
+    page
+}
+
 fn plain(name: &str, style: Style) -> String {
     if style == Style::Text { name.to_owned() } else { latex_name(name) }
 }
@@ -169,7 +194,8 @@ fn residual(result: &Averaging) -> String {
 }
 
 /// sum of c a^exponent.
-fn rate(terms: &[RateTerm], style: Style) -> String {
+/// A sum of powers of a name.
+fn rate(terms: &[RateTerm], name: &str, style: Style) -> String {
     let mut line = String::new();
     for term in terms {
         let coefficient: Cow<'_, str> = match &term.coefficient {
@@ -181,7 +207,7 @@ fn rate(terms: &[RateTerm], style: Style) -> String {
             Coefficient::Formula(formula) => formula.text().into(),
         };
         let is_sum = coefficient.trim_start_matches('-').contains([' ']);
-        let name = (term.exponent != 0).then(|| power("a", term.exponent.into(), style));
+        let name = (term.exponent != 0).then(|| power(name, term.exponent.into(), style));
         let (negative, magnitude) = match coefficient.strip_prefix('-') {
             Some(rest) if !is_sum => (true, rest),
             _ => (false, &*coefficient),
