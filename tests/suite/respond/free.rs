@@ -3,6 +3,7 @@
 use super::{ask, decimals, to_order};
 use lindstedt::grid::Axis;
 use lindstedt::respond::State;
+use lindstedt::verify::Verdict;
 use lindstedt::{Oscillator, Refusal, Respond, Status, Verify, Work};
 use rug::Rational;
 
@@ -11,7 +12,9 @@ use rug::Rational;
 fn free_motions_against_periodic_orbits() {
     let pair = "x'' + x = eps*((1 - x^2)*x' + (y' - x')/5); y'' + (1 + eps/10)*y = eps*((1 - y^2)*y' + (x' - y')/5)";
     let spring = "x'' + x + eps*(x*y + x^3/5); y'' + 4*y + eps*x^2/2";
-    for (equation, states) in [(pair, 4), (spring, 3)] {
+    // Equal amplitudes by symmetry: only frequencies differ, and their slopes count.
+    let turning = "x'' + x + eps*(x^3/5 - y'/2); y'' + y + eps*(y^3/5 + x'/2)";
+    for (equation, states) in [(pair, 4), (spring, 3), (turning, 2)] {
         let case = Oscillator::parse(equation).unwrap();
         for order in 1..=3 {
             let small = [20, 40, 80].map(|n| Rational::from((1, n))).to_vec();
@@ -33,6 +36,16 @@ fn free_motions_against_periodic_orbits() {
             }
         }
     }
+}
+
+/// Orbits that rates of order eps^2 alone tell from their neighbours: what integration leaves of them is no difference.
+#[test]
+fn noise_of_integration_is_no_difference() {
+    let case = Oscillator::parse("x'' + x + eps*(x^3 + y^2); y'' + y + eps*(y^3 + 2*x*y)").unwrap();
+    let small = [4000, 8000].map(|n| Rational::from((1, n))).to_vec();
+    let question = Verify { order: 2, small, samples: 2, ..Verify::default() };
+    let found = case.verify(&question, &Work::default()).unwrap().value.steady.unwrap();
+    assert_ne!(found.verdict, Verdict::Disagrees, "{}", found.reason);
 }
 
 /// Two oscillators of van der Pol with dampers between them, to order one by hand: with w_j = (a_j/2) e^{i phi_j},

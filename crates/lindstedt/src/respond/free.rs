@@ -309,7 +309,7 @@ impl Subject<'_> {
         let mut pairs = [[a, 0.0], [a * y[0], a * y[1]]];
         pairs.rotate_left(c);
         let at = [pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]];
-        let (delta, exponents) = free.drift((system, values), &at);
+        let (delta, exponents) = free.drift(system, &at);
         let point = Point { at: at.to_vec(), exponents, change: None };
         let rate = self
             .rate(self.open()[0].and_then(|k| values[k].as_ref()).map(|it| it.interval().middle()));

@@ -208,18 +208,14 @@ impl FreePhase {
 
     /// delta of a motion w, and the exponents of the deviations from it but those that are 0 for all: one along the free
     /// phase, and of families one along them; there the others are a pair, its square half the trace of the square.
-    /// `system` is G in w and a parameter that has no value, if there is one, which follows w in the list.
+    /// `system` is G in w and a parameter that has no value, if there is one.
     #[must_use]
-    pub fn drift(
-        &self,
-        (system, values): (&System, &[Option<Value>]),
-        w: &[f64],
-    ) -> (f64, Vec<Complex<f64>>) {
-        let (rates, slopes) = system.derivatives(w);
+    pub fn drift(&self, system: &System, w: &[f64]) -> (f64, Vec<Complex<f64>>) {
+        let (values, slopes) = system.derivatives(w);
         let weights = self.weights.each_ref().map(Rational::to_f64);
         let square = |c: usize| w[2 * c].powi(2) + w[2 * c + 1].powi(2);
         let c = usize::from(square(1) > square(0));
-        let [x, y, p, q] = [w[2 * c], w[2 * c + 1], rates[2 * c], rates[2 * c + 1]];
+        let [x, y, p, q] = [w[2 * c], w[2 * c + 1], values[2 * c], values[2 * c + 1]];
         let delta = (x * q - y * p) / square(c) / weights[c];
         let growth = (x * p + y * q) / square(c);
         let rows = slopes.chunks_exact(system.variables()).flat_map(|row| &row[..4]);
@@ -228,9 +224,9 @@ impl FreePhase {
             slopes[8 * j + 2 * j + 1] += delta * d;
             slopes[8 * j + 4 + 2 * j] -= delta * d;
         }
-        if let Some(energy) = &self.energy {
-            let energy = System::new(energy, values).values(&w[4..]);
-            (0..4).for_each(|k| slopes[5 * k] -= growth * energy[k / 2] / energy[c]);
+        if self.energy.is_some() {
+            // Of the size of the terms left out, as it is whichever energy it goes by.
+            (0..4).for_each(|k| slopes[5 * k] -= growth);
             let entry = |i: usize, j: usize| slopes[4 * i + j] * slopes[4 * j + i];
             let trace: f64 = (0..16).map(|k| entry(k / 4, k % 4)).sum();
             let root = Complex::new(0.5 * trace, 0.0).sqrt();
@@ -410,7 +406,7 @@ impl FreePhase {
                 ]
             };
             let mut start = [turned(0), turned(1)].concat();
-            start.push(self.drift((flow, values), point).0);
+            start.push(self.drift(flow, point).0);
             start.resize(n, 0.0);
             start.push(point[4]);
             let unknowns = if self.energy.is_some() { 0 } else { 4 };
@@ -442,7 +438,7 @@ impl FreePhase {
         for point in &mut branch.points {
             let unfolded = point.clone();
             shorten(&mut point.at, own.unknowns());
-            let (delta, exponents) = self.drift((flow, values), &point.at);
+            let (delta, exponents) = self.drift(flow, &point.at);
             point.exponents = exponents;
             rates.push(delta);
             // The exponent 0 along the phase makes the sum with another vanish at folds.

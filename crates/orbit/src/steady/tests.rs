@@ -589,7 +589,7 @@ fn steady_but_for_a_phase() {
         assert!((im - 0.4).abs() < 1e-9 && (re.hypot(im) - 1.0).abs() < 1e-9);
         assert!((a * a - (1.0 - 0.5 * re)).abs() < 1e-9);
         // w_2' = -i delta w_2.
-        let (delta, exponents) = free.drift((&flow, &[]), &[a, 0.0, a * re, a * im]);
+        let (delta, exponents) = free.drift(&flow, &[a, 0.0, a * re, a * im]);
         assert!((delta + 0.25 * re).abs() < 1e-9, "{delta}");
         // Liouville: the sum is the trace, and there are three.
         let sum: f64 = exponents.iter().map(|x| x.re).sum();
