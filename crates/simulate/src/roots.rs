@@ -43,7 +43,8 @@ pub(crate) struct RootFinder<E> {
     /// Bernstein coefficients of the intervals still to be looked at, the leftmost on top.
     stack: Vec<Piece<E>>,
     pool: Vec<Vec<E>>,
-    binomials: Vec<E>,
+    /// C(n, 0), C(n, 1), ... of every n that was needed.
+    binomials: Vec<Vec<E>>,
     pub(crate) found: Vec<Root<E>>,
 }
 
@@ -152,17 +153,19 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
     /// b_i = sum_{k<=i} C(i,k)/C(n,k) c_k, by n(n+1)/2 additions.
     fn bernstein<R: Real<Element = E>>(&mut self, real: &R) -> Vec<E> {
         let n = self.scaled.len() - 1;
-        if self.binomials.len() != n + 1 {
+        if self.binomials.len() <= n {
+            self.binomials.resize_with(n + 1, Vec::new);
+        }
+        if self.binomials[n].is_empty() {
             let mut binomial = rug::Integer::from(1);
-            self.binomials.clear();
             for k in 0..=n {
-                self.binomials.push(real.rational(&rug::Rational::from(&binomial)));
+                self.binomials[n].push(real.rational(&rug::Rational::from(&binomial)));
                 binomial = binomial * (n - k) as u64 / (k + 1) as u64;
             }
         }
         let mut b = self.pool.pop().unwrap_or_default();
         b.resize_with(n + 1, || real.zero());
-        for ((b, c), binomial) in b.iter_mut().zip(&self.scaled).zip(&self.binomials) {
+        for ((b, c), binomial) in b.iter_mut().zip(&self.scaled).zip(&self.binomials[n]) {
             real.divide(b, c, binomial);
         }
         for j in 1..=n {
