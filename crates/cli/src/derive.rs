@@ -2,11 +2,11 @@
 
 use crate::Outcome;
 use crate::arguments::{Precision, one_of};
-use crate::failure::Failure;
+use crate::failure::{Failure, NO_ANSWER};
 use crate::session::Session;
 use clap::{Args, ValueEnum};
 use lindstedt::choices::{NORMALISATIONS, Numbers, ROUTES, TIERS};
-use lindstedt::{Condition, Derive, Route};
+use lindstedt::{Answer, Condition, Derive, Error, Route};
 
 #[derive(Debug, Args)]
 pub struct DeriveOptions {
@@ -36,10 +36,10 @@ pub struct DeriveOptions {
     /// primes (limit cycles, forces with velocities).
     #[arg(long, value_enum, value_name = "WHAT")]
     pub only: Option<Only>,
-    /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated
-    /// Fourier series in doubles (--harmonics).
-    #[arg(long, value_parser = one_of(TIERS), default_value = "exact")]
-    pub tier: Numbers,
+    /// Exact, the default (averaging encloses what is irrational, but not where exact is asked for), or numbers with an estimated
+    /// error: collocation (--digits or --f64) or a truncated Fourier series in doubles (--harmonics).
+    #[arg(long, value_parser = one_of(TIERS))]
+    pub tier: Option<Numbers>,
     /// Harmonics of each symmetry class in the Fourier tier.
     #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16384))]
     pub harmonics: u32,
@@ -60,7 +60,8 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let order = options.order as usize;
     let unknown = options.unknown.as_deref().or(oscillator.unknown());
     let averaged = oscillator.condition() == Some(Condition::FreeAmplitude);
-    if options.only.is_some() && (options.tier != Numbers::Exact || options.mode.is_some()) {
+    let numbers = options.tier.unwrap_or(Numbers::Exact);
+    if options.only.is_some() && (numbers != Numbers::Exact || options.mode.is_some()) {
         let message = "--only frequency belongs to exact expansions of one unknown".to_owned();
         return Err(Failure::usage("route-and-tier", message, "drop --only, or --tier and --mode"));
     }
@@ -68,15 +69,18 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         check_plain(options)?;
     }
     if let Some(mode) = options.mode {
-        return session.show(oscillator.normal_mode(mode as usize, order, &work), &[]);
+        return session.show(
+            Ok(as_asked(options, oscillator.normal_mode(mode as usize, order, &work))?),
+            &[],
+        );
     }
     if let Some(name) = unknown {
-        return session.show(oscillator.sought(name, order, &work), &[]);
+        return session.show(Ok(as_asked(options, oscillator.sought(name, order, &work))?), &[]);
     }
     if averaged {
-        return session.show(oscillator.averaged(order, &work), &[]);
+        return session.show(Ok(as_asked(options, oscillator.averaged(order, &work))?), &[]);
     }
-    let Some(tier) = options.tier.tier(options.harmonics as usize, &work) else {
+    let Some(tier) = numbers.tier(options.harmonics as usize, &work) else {
         let route = route(options)?;
         return session.show(oscillator.derive(Derive { order, route }, &work), &[]);
     };
@@ -85,6 +89,25 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         return Err(Failure::usage("route-and-tier", message, "drop --route or --tier"));
     }
     session.show(oscillator.estimate(order, tier, &work), &[])
+}
+
+/// An answer, but no enclosures where exact coefficients are asked for.
+fn as_asked<T>(
+    options: &DeriveOptions,
+    answer: Result<Answer<T>, Error>,
+) -> Result<Answer<T>, Failure> {
+    let answer = answer?;
+    if options.tier == Some(Numbers::Exact) && answer.header.tier != "exact" {
+        let message = "coefficients are irrational: they are enclosed, not exact";
+        let hint = "without --tier exact all their digits are certain";
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-rational-modes",
+            message: message.to_owned(),
+            hint: hint.to_owned(),
+        });
+    }
+    Ok(answer)
 }
 
 /// The route; `--only frequency` goes by the energy integral where that applies, and else by primes.
@@ -102,7 +125,8 @@ fn route(options: &DeriveOptions) -> Result<Route, Failure> {
 
 /// Refuses tiers and routes where there is one way alone.
 fn check_plain(options: &DeriveOptions) -> Result<(), Failure> {
-    let plain = options.tier == Numbers::Exact && options.only.is_none();
+    let exact = options.tier.is_none_or(|tier| tier == Numbers::Exact);
+    let plain = exact && options.only.is_none();
     if plain && options.route == Route::Automatic {
         return Ok(());
     }
