@@ -158,13 +158,11 @@ fn weights(forces: &[Monomials]) -> Option<Vec<Weight>> {
         let mut open = vec![start];
         while let Some(i) = open.pop() {
             let Some((mass, weight)) = weights[i].clone() else { continue };
-            for j in 0..forces.len() {
-                if weights[j].is_none()
-                    && let Some((factor, q)) = ratio(forces, i, j)
-                {
+            for (j, own) in weights.iter_mut().enumerate().filter(|(_, own)| own.is_none()) {
+                if let Some((factor, q)) = ratio(forces, i, j) {
                     let all = factor.parameters.iter();
                     let mass = all.fold(mass.clone(), |m, (name, e)| times(&m, name, *e));
-                    weights[j] = Some((mass, q * &weight));
+                    *own = Some((mass, q * &weight));
                     open.push(j);
                 }
             }
