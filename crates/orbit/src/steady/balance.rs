@@ -10,6 +10,9 @@
 //!
 //! At a fold the real polynomial det G_w vanishes, too: its harmonics are those of one more equation.
 
+#[cfg(test)]
+mod tests;
+
 use super::flow::times;
 use super::krawczyk::{Region, middle};
 use super::search::{Limits, Places, halved, modulus};

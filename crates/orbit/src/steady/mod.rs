@@ -42,8 +42,6 @@ mod relative;
 mod search;
 mod settle;
 mod survey;
-#[cfg(test)]
-mod tests;
 mod value;
 
 pub use balance::outermost;

@@ -8,3 +8,4 @@ mod functions;
 mod random;
 mod several;
 mod sharpness;
+mod steady;
