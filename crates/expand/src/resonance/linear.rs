@@ -16,10 +16,10 @@
 //! general scheme derives the same, slower, and is its judge in the tests.
 
 use super::delayed::step_back;
-use super::{Nearest, Resonant};
+use super::{Nearest, SlowFlow};
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
-use crate::driver::Scheme;
+use crate::driver::{OrderWork, Scheme, run};
 use lindstedt_algebra::{AmplitudeAlgebra, LinearPart, Ring, Split};
 use rug::Rational;
 use std::borrow::Cow;
@@ -36,9 +36,19 @@ pub(super) struct Affine<E> {
 }
 
 impl<E: Clone> Affine<E> {
-    /// The last node of an equation up to an order; nothing where it is not linear with constant factors and sources off
-    /// resonance.
+    /// An equation up to an order; nothing where it is not linear with constant factors and sources off resonance.
     pub(super) fn of<A: AmplitudeAlgebra<Element = E>>(
+        algebra: &A,
+        equation: &Equation<A>,
+        order: usize,
+    ) -> Option<Self> {
+        let read = Self::read(algebra, equation, order)?;
+        let off = |f: &E| algebra.is_off_resonance(0, f);
+        read.source.iter().all(off).then_some(read)
+    }
+
+    /// The same with sources of any frequency. What is multiplied with zero up to that order need not be linear.
+    pub(super) fn read<A: AmplitudeAlgebra<Element = E>>(
         algebra: &A,
         equation: &Equation<A>,
         order: usize,
@@ -46,33 +56,56 @@ impl<E: Clone> Affine<E> {
         if equation.roots.len() != 1 || algebra.is_zero(&algebra.amplitude(0)) {
             return None;
         }
-        let mut nodes: Vec<Self> = Vec::new();
+        let mut nodes: Vec<Option<Self>> = Vec::new();
         for node in &equation.nodes {
             let value = match node {
-                Node::Constant(c) => Self::source(vec![c.clone()]),
-                Node::Small => Self::source(vec![algebra.zero(), algebra.one()]),
-                &Node::Forcing(index) => Self::source(vec![equation.forcing[index].clone()]),
-                Node::Displacement => Self::unknown(algebra, (None, false)),
-                Node::Velocity => Self::unknown(algebra, (None, true)),
+                Node::Constant(c) => Some(Self::source(vec![c.clone()])),
+                Node::Small if order == 0 => Some(Self::source(Vec::new())),
+                Node::Small => Some(Self::source(vec![algebra.zero(), algebra.one()])),
+                &Node::Forcing(index) => Some(Self::source(vec![equation.forcing[index].clone()])),
+                Node::Displacement => Some(Self::unknown(algebra, (None, false))),
+                Node::Velocity => Some(Self::unknown(algebra, (None, true))),
                 &Node::Unknown { index: 0, velocity, delay } => {
-                    Self::unknown(algebra, (delay, velocity))
+                    Some(Self::unknown(algebra, (delay, velocity)))
                 }
-                Node::Sum(terms) => {
-                    let mut sum = Self::source(Vec::new());
-                    for (q, term) in terms {
-                        let q = [algebra.rational(q)];
-                        sum.add(algebra, &nodes[*term].scaled(algebra, &q, order));
+                Node::Sum(terms) => terms.iter().try_fold(Self::source(Vec::new()), |sum, term| {
+                    let (q, term) = (algebra.rational(&term.0), nodes[term.1].as_ref()?);
+                    Some(sum.plus(algebra, term.scaled(algebra, &[q], order)))
+                }),
+                &Node::Product(a, b) => match (&nodes[a], &nodes[b]) {
+                    (Some(a), Some(b)) => a.times(algebra, b, order),
+                    (Some(zero), None) | (None, Some(zero)) if zero.vanishes(algebra) => {
+                        Some(Self::source(Vec::new()))
                     }
-                    sum
-                }
-                &Node::Product(a, b) => nodes[a].times(algebra, &nodes[b], order)?,
-                _ => return None,
+                    _ => None,
+                },
+                _ => None,
             };
             nodes.push(value);
         }
-        let last = nodes.pop()?;
-        let off = |f: &E| algebra.is_off_resonance(0, f);
-        last.source.iter().all(off).then_some(last)
+        nodes.swap_remove(equation.root())
+    }
+
+    /// The factors of order zero.
+    pub(super) fn linear_part<R: Ring<Element = E>>(
+        &self,
+        ring: &R,
+        delays: usize,
+    ) -> LinearPart<E> {
+        let factor = |delay, velocity| {
+            let factor = self.factors.get(&(delay, velocity)).and_then(|list| list.first());
+            factor.cloned().unwrap_or_else(|| ring.zero())
+        };
+        let delayed = |delay| (factor(Some(delay), false), factor(Some(delay), true));
+        LinearPart {
+            stiffness: factor(None, false),
+            damping: factor(None, true),
+            delayed: (0..delays).map(delayed).collect(),
+        }
+    }
+
+    fn vanishes<R: Ring<Element = E>>(&self, ring: &R) -> bool {
+        self.factors.values().chain([&self.source]).flatten().all(|c| ring.is_zero(c))
     }
 
     fn source(source: Vec<E>) -> Self {
@@ -84,11 +117,12 @@ impl<E: Clone> Affine<E> {
         Self { source: Vec::new(), factors }
     }
 
-    fn add<R: Ring<Element = E>>(&mut self, ring: &R, other: &Self) {
-        add(ring, &mut self.source, &other.source);
-        for (unknown, factor) in &other.factors {
-            add(ring, self.factors.entry(*unknown).or_default(), factor);
+    fn plus<R: Ring<Element = E>>(mut self, ring: &R, other: Self) -> Self {
+        add(ring, &mut self.source, other.source);
+        for (unknown, factor) in other.factors {
+            add(ring, self.factors.entry(unknown).or_default(), factor);
         }
+        self
     }
 
     fn scaled<R: Ring<Element = E>>(&self, ring: &R, q: &[E], order: usize) -> Self {
@@ -119,9 +153,11 @@ impl<E: Clone> Affine<E> {
     }
 }
 
-fn add<R: Ring>(ring: &R, sum: &mut Vec<R::Element>, list: &[R::Element]) {
-    sum.resize_with(sum.len().max(list.len()), || ring.zero());
-    sum.iter_mut().zip(list).for_each(|(a, b)| ring.add_assign(a, b));
+fn add<R: Ring>(ring: &R, sum: &mut Vec<R::Element>, mut list: Vec<R::Element>) {
+    if sum.len() < list.len() {
+        std::mem::swap(sum, &mut list);
+    }
+    sum.iter_mut().zip(&list).for_each(|(a, b)| ring.add_assign(a, b));
 }
 
 fn product<R: Ring>(ring: &R, a: &[R::Element], b: &[R::Element], order: usize) -> Vec<R::Element> {
@@ -178,9 +214,9 @@ struct Delayed<E> {
 type Product<'a, E> = (E, Cow<'a, E>);
 
 impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
-    /// From order zero of the general scheme.
-    pub(super) fn start(start: &Resonant<'a, A>, equation: Affine<A::Element>) -> Option<Self> {
-        let algebra = start.algebra;
+    /// Order zero: z of the frequency nu, and the response to the force.
+    pub(super) fn start(algebra: &'a A, equation: Affine<A::Element>) -> Result<Self, ExpandError> {
+        let other = ExpandError::NotTheFrequency { unknown: 0 };
         let amplitude = algebra.amplitude(0);
         let factor = |f: &A::Element| algebra.by_amplitude(f, 0);
         let delays = (0..algebra.delays()).map(|delay| {
@@ -188,27 +224,51 @@ impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
             let strong = equation.first(algebra, delay) == Some(0);
             Some(Delayed { turn, late: vec![algebra.one()], strong })
         });
-        let solution = start.x.first()?.clone();
-        let free = algebra.twice_real(&amplitude);
-        Some(Self {
+        let delays = delays.collect::<Option<_>>().ok_or(ExpandError::NotWeaklyNonlinear)?;
+        let mut start = Self {
             root: vec![factor(&algebra.by_time(&amplitude))],
             weighted: vec![algebra.zero()],
             one: [algebra.one()],
-            delays: delays.collect::<Option<_>>()?,
-            linear: start.linear.first()?.clone(),
+            delays,
+            linear: equation.linear_part(algebra, algebra.delays()),
             equation,
-            flow: start.flow.first()?.clone(),
-            forced: solution.iter().map(|x| algebra.sub(x, &free)).collect(),
-            solution,
+            flow: vec![algebra.zero()],
+            forced: Vec::new(),
+            solution: Vec::new(),
             nearest: Vec::new(),
             products: Cell::new(0),
             algebra,
-        })
+        };
+        // L(i nu) = 0; nothing responds yet.
+        let [free, force] = start.rest(0).ok_or(ExpandError::NotWeaklyNonlinear)?;
+        if !algebra.may_vanish(&free) {
+            return Err(other);
+        }
+        let phase = |source| ExpandError::Phase { order: 0, source };
+        let split = algebra.split(0, &start.linear, &algebra.neg(&force)).map_err(phase)?;
+        let mut left = algebra.add(&force, &algebra.by_time(&algebra.by_time(&split.response)));
+        start.solution = vec![algebra.add(&algebra.twice_real(&amplitude), &split.response)];
+        start.forced = vec![split.response];
+        for (&unknown, factors) in &start.equation.factors {
+            if let Some(factor) = factors.first().filter(|factor| !algebra.is_zero(factor)) {
+                let value = start.response(unknown, 0).ok_or(ExpandError::NotWeaklyNonlinear)?;
+                algebra.add_assign(&mut left, &algebra.mul(&value, factor));
+            }
+        }
+        if algebra.may_vanish(&left) { Ok(start) } else { Err(other) }
     }
 
-    /// f, x and the smallest divisors.
-    pub(super) fn finish(self) -> (Vec<A::Element>, Vec<A::Element>, Vec<Nearest>) {
-        (self.flow, self.solution, self.nearest)
+    /// Derives the orders.
+    pub(super) fn finish(
+        mut self,
+        order: usize,
+        observer: &mut dyn FnMut(&OrderWork) -> bool,
+    ) -> Result<SlowFlow<A::Element>, ExpandError> {
+        let work = run(&mut self, 1..=order, observer)?;
+        let (flow, solution) = (vec![self.flow], vec![self.solution]);
+        let (parameter, turned) = (Vec::new(), Vec::new());
+        let detuning = Vec::new();
+        Ok(SlowFlow { flow, solution, detuning, parameter, turned, nearest: self.nearest, work })
     }
 
     /// sum_k a_k b_{n-k} as far as both are known.

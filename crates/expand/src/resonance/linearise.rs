@@ -1,5 +1,6 @@
 //! The linear part of equations at order zero.
 
+use super::linear::Affine;
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::evaluator::Evaluator;
@@ -13,6 +14,9 @@ pub fn linear_part<A: AmplitudeAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
 ) -> Result<LinearPart<A::Element>, ExpandError> {
+    if let Some(affine) = Affine::read(algebra, equation, 0) {
+        return Ok(affine.linear_part(algebra, algebra.delays()));
+    }
     let generating = [algebra.twice_real(&algebra.amplitude(0))];
     let (mut parts, _) = linearise(algebra, equation, &generating)?;
     parts.pop().ok_or(ExpandError::NotWeaklyNonlinear)

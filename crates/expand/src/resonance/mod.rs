@@ -132,18 +132,14 @@ pub fn resonant<A: AmplitudeAlgebra>(
     detuning: &[Vec<A::Element>],
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<SlowFlow<A::Element>, ExpandError> {
+    if detuning.concat().is_empty()
+        && let Some(affine) = Affine::of(algebra, equation, order)
+    {
+        return Linear::start(algebra, affine)?.finish(order, observer);
+    }
     let generating = |j| algebra.twice_real(&algebra.amplitude(j));
     let generating = (0..algebra.unknowns()).map(generating).collect();
-    let mut start = Resonant::start(algebra, equation, detuning, generating)?;
-    let Some(affine) =
-        Affine::of(algebra, equation, order).filter(|_| detuning.concat().is_empty())
-    else {
-        return start.finish(order, observer);
-    };
-    let mut linear = Linear::start(&start, affine).ok_or(ExpandError::NotWeaklyNonlinear)?;
-    let work = run(&mut linear, 1..=order, observer)?;
-    (start.flow[0], start.x[0], start.nearest) = linear.finish();
-    Ok(start.finished(work))
+    Resonant::start(algebra, equation, detuning, generating)?.finish(order, observer)
 }
 
 /// The motion x_j = `generating[j]` + sum eps^n u_{j,n} without slow change, for functions of the force's
