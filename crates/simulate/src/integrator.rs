@@ -356,14 +356,13 @@ impl<'s, R: Real> Integrator<'s, R> {
             h = remaining.clone();
             last = true;
         }
-        let shortest = real.log2(&self.clock.high).max(-1000.0) - f64::from(real.bits());
         loop {
+            let end = real.sum(&self.clock.high, &h);
             // What remains to the target may be less than a rounding error of the time: an event
             // fell on the target.
-            if !last && (real.log2(&h) < shortest || real.log2(&h).is_nan()) {
+            if !last && (end <= self.clock.high || real.log2(&h).is_nan()) {
                 return Err(self.stuck(time));
             }
-            let end = real.sum(&self.clock.high, &h);
             if self.series.holds(self.system, &end, &self.phase, &h, self.log2_tolerance) {
                 break;
             }

@@ -62,6 +62,7 @@ mod outcome;
 mod past;
 mod poincare;
 mod power;
+mod probe;
 mod puiseux;
 mod quantity;
 mod report;

@@ -133,7 +133,7 @@ impl<R: Real> Past<R> {
             let logs = history.rows.iter().map(|row| real.log2(self.history.at(*row, level)));
             logs.fold(f64::NEG_INFINITY, |a, b| if b.is_nan() { b } else { a.max(b) })
         };
-        let log = log2_step(order + 1, log2_tolerance, norm)?;
+        let log = log2_step(order + 1, log2_tolerance, [0, 1, 2].map(norm), norm)?;
         for (index, op) in system.tape.ops.iter().enumerate() {
             let Op::Delayed { state, delay: d } = *op else { continue };
             if d != delay {

@@ -2,9 +2,10 @@
 
 use crate::error::SimulateError;
 use crate::integrator::real::Real;
+use crate::probe::{Probe, slope};
 use crate::system::System;
 use crate::tape::{Moment, Op, Rows, horner};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 /// From so many levels on a step is long (220 digits): it is asked whether to go on with it.
 const LONG: usize = 256;
@@ -18,16 +19,19 @@ pub(crate) struct Phase {
     pub(crate) contact: Option<usize>,
 }
 
+/// log2 of the longest step, and of the largest of x_0 and of x_1; nothing where a coefficient is not finite.
+type Length = Option<(f64, [f64; 2])>;
+
 /// Taylor coefficients and the places to compute them in.
 #[derive(Clone, Debug)]
 pub(crate) struct Series<R: Real> {
     pub(crate) rows: Rows<R::Element>,
     pub(crate) order: usize,
-    probe: Rows<R::Element>,
-    /// x' - f there.
-    defects: Vec<R::Element>,
-    /// Where the states of the probe are those of the series.
+    pub(crate) probe: Probe<R::Element>,
+    /// Where it was placed.
     probed: Option<R::Element>,
+    /// log2 of the length of a step, and of the norms of x_0 and x_1, once asked for.
+    length: Option<Length>,
     sum: R::Element,
     scratch: R::Element,
 }
@@ -38,9 +42,9 @@ impl<R: Real> Series<R> {
         Self {
             rows: Rows::new(system.tape.rows(), order + 1, &zero),
             order,
-            probe: Rows::new(system.tape.rows(), 1, &zero),
-            defects: vec![zero.clone(); system.variables],
+            probe: Probe::new(system.tape.rows(), system.variables, &zero),
             probed: None,
+            length: None,
             sum: zero.clone(),
             scratch: zero,
         }
@@ -58,7 +62,7 @@ impl<R: Real> Series<R> {
         tick: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<(), SimulateError> {
         let asks = levels >= LONG;
-        self.probed = None;
+        (self.probed, self.length) = (None, None);
         let sliding = phase.modes.iter().position(|mode| *mode == 0);
         let mut sensitivity = None;
         for n in 0..=levels {
@@ -97,7 +101,7 @@ impl<R: Real> Series<R> {
         rows: &[usize],
         from: impl Fn(usize) -> I,
     ) {
-        self.probed = None;
+        (self.probed, self.length) = (None, None);
         for row in rows {
             self.rows.row_mut(*row).iter_mut().zip(from(*row)).for_each(|(to, x)| *to = x);
         }
@@ -233,25 +237,35 @@ impl<R: Real> Series<R> {
     }
 
     /// log2 of the largest coefficient of level `n` of the states in `range`.
-    fn norm(&self, real: &R, range: std::ops::Range<usize>, n: usize) -> f64 {
+    fn norm(&self, real: &R, range: Range<usize>, n: usize) -> f64 {
         real.log2_of_largest(range.map(|state| self.rows.at(state, n)))
     }
 
     /// The longest step h with |x_m| h^m <= tolerance max_{k<3} |x_k| h^k for m = p - 1, p, in
     /// the largest norm; the linearisation is measured by itself. Nothing if a coefficient is
     /// not finite.
-    pub(crate) fn step(&self, system: &System<R>, log2_tolerance: f64) -> Option<f64> {
+    pub(crate) fn step(&mut self, system: &System<R>, log2_tolerance: f64) -> Option<f64> {
+        let length = self.length.unwrap_or_else(|| self.longest(system, log2_tolerance));
+        self.length = Some(length);
+        Some(length?.0.min(1000.0).exp2())
+    }
+
+    fn longest(&self, system: &System<R>, log2_tolerance: f64) -> Length {
         let n = system.variables;
-        let mut log = f64::INFINITY;
-        for group in [0..n, n..system.tape.states] {
-            if group.is_empty() {
-                continue;
-            }
-            log = log.min(log2_step(self.order, log2_tolerance, |level| {
-                self.norm(&system.real, group.clone(), level)
-            })?);
+        let first = |group: Range<usize>| {
+            [0, 1, 2].map(|level| self.norm(&system.real, group.clone(), level))
+        };
+        let of = |group: Range<usize>, first| {
+            let last = |level| self.norm(&system.real, group.clone(), level);
+            log2_step(self.order, log2_tolerance, first, last)
+        };
+        let own = first(0..n);
+        let mut log = of(0..n, own)?;
+        let others = n..system.tape.states;
+        if !others.is_empty() {
+            log = log.min(of(others.clone(), first(others))?);
         }
-        Some(log.min(1000.0).exp2())
+        Some((log, [own[0], own[1]]))
     }
 
     /// Whether h |x'(h) - f(x(h))| is within the tolerance (relative to |x_0| + h |x_1|) or within
@@ -269,64 +283,56 @@ impl<R: Real> Series<R> {
             return true;
         }
         let real = &system.real;
-        let used: usize = system.tape.states;
-        for state in 0..used {
-            horner(real, self.probe.at_mut(state, 0), self.rows.row(state), h);
+        if self.probed.as_ref() != Some(h) {
+            self.place(system, end, phase, h);
         }
-        self.probed = Some(h.clone());
-        for (index, op) in system.tape.ops.iter().enumerate() {
-            if matches!(op, Op::Delayed { .. } | Op::Control { .. }) {
-                let row = used + index;
-                horner(real, self.probe.at_mut(row, 0), self.rows.row(row), h);
-            }
-        }
-        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
-        let mut moment = Moment { time: end, modes: &phase.modes, sum, scratch };
-        system.tape.level(real, &mut self.probe, 0, &mut moment);
-        for state in 0..system.variables {
-            self.derivative(real, state, h);
-            let f = self.probe.at(system.right_sides[state], 0);
-            real.subtract(&mut self.scratch, &self.sum, f);
-            real.set(&mut self.defects[state], &self.scratch);
-        }
-        let worst = real.log2_of_largest(self.defects.iter());
-        if worst.is_nan() {
+        let worst = real.log2_of_largest(self.probe.defects.iter());
+        let Some((_, [place, speed])) = self.length.flatten().filter(|_| !worst.is_nan()) else {
             return false;
-        }
-        let n = system.variables;
-        let scale = self.norm(real, 0..n, 0).max(self.norm(real, 0..n, 1) + real.log2(h));
+        };
+        let size = real.log2(h);
+        let scale = place.max(speed + size);
         // The derivative's tail is p times that of the series.
         let factor = (self.order as f64).log2() + 3.0;
-        if worst + real.log2(h) <= log2_tolerance + factor + scale {
+        if worst + size <= log2_tolerance + factor + scale {
             return true;
         }
         // Rounding errors of some hundred operations on the largest term are no defect either.
         let terms = system.tape.ops.iter().zip(system.tape.states..);
         let terms = terms.filter(|(op, _)| !matches!(op, Op::Constant(_) | Op::Time));
-        let terms = terms.map(|(_, row)| self.probe.at(row, 0));
+        let terms = terms.map(|(_, row)| self.probe.rows.at(row, 0));
         let mut largest = real.log2_of_largest(terms.clone());
         if largest.is_nan() {
             // Of those that are finite.
             largest = terms.map(|term| real.log2(term)).fold(f64::NEG_INFINITY, f64::max);
         }
-        let largest = largest.max(scale - real.log2(h));
+        let largest = largest.max(scale - size);
         worst <= largest + 7.0 - f64::from(real.bits())
     }
 
-    /// sum = x'(s) of a state.
-    fn derivative(&mut self, real: &R, row: usize, s: &R::Element) {
-        real.set_zero(&mut self.sum);
-        for (k, c) in self.rows.row(row).iter().enumerate().skip(1).rev() {
-            real.scale(&mut self.sum, s);
-            real.set(&mut self.scratch, c);
-            real.times_integer(&mut self.scratch, k as i32);
-            real.increase(&mut self.sum, &self.scratch);
-        }
+    fn place(&mut self, system: &System<R>, end: &R::Element, phase: &Phase, h: &R::Element) {
+        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
+        let mut moment = Moment { time: end, modes: &phase.modes, sum, scratch };
+        let equation = (&system.tape, &system.right_sides[..]);
+        self.probe.place(&system.real, equation, &self.rows, h, &mut moment);
+        self.probed = Some(h.clone());
+    }
+
+    /// The rows and defects at h from elsewhere.
+    pub(crate) fn take_probe(
+        &mut self,
+        h: R::Element,
+        rows: impl Iterator<Item = R::Element>,
+        defects: impl Iterator<Item = R::Element>,
+    ) {
+        self.probe.rows.data.iter_mut().zip(rows).for_each(|(to, x)| *to = x);
+        self.probe.defects.iter_mut().zip(defects).for_each(|(to, x)| *to = x);
+        self.probed = Some(h);
     }
 
     /// The derivative of a row at s.
     pub(crate) fn slope(&mut self, real: &R, row: usize, s: &R::Element) -> R::Element {
-        self.derivative(real, row, s);
+        slope(real, (&mut self.sum, &mut self.scratch), self.rows.row(row), s);
         self.sum.clone()
     }
 
@@ -335,7 +341,7 @@ impl<R: Real> Series<R> {
         let probed = self.probed.as_ref() == Some(s);
         for (row, state) in states.iter_mut().enumerate() {
             if probed {
-                real.set(state, self.probe.at(row, 0));
+                real.set(state, self.probe.rows.at(row, 0));
             } else {
                 horner(real, state, self.rows.row(row), s);
             }
@@ -350,13 +356,13 @@ impl<R: Real> Series<R> {
     }
 }
 
-/// log2 of the step length from the norms (as log2) of the levels; infinite for polynomials.
+/// log2 of the step length from the norms (as log2) of the first and of the other levels; infinite for polynomials.
 pub(crate) fn log2_step(
     order: usize,
     log2_tolerance: f64,
+    first: [f64; 3],
     norm: impl Fn(usize) -> f64,
 ) -> Option<f64> {
-    let first = [norm(0), norm(1), norm(2)];
     let mut log = f64::INFINITY;
     for m in [order - 1, order] {
         let last = norm(m);

@@ -373,7 +373,7 @@ fn chain<R: Arithmetic>(
 }
 
 /// to = sum_k c_k s^k (Horner).
-#[inline]
+#[inline(always)]
 pub(crate) fn horner<R: Arithmetic>(
     real: &R,
     to: &mut R::Element,

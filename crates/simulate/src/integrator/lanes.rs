@@ -8,6 +8,8 @@ use super::arithmetic::Arithmetic;
 use super::real::{Doubles, Places, Real};
 use super::{Integrator, Next, Tick, Together};
 use crate::error::SimulateError;
+use crate::past::Clock;
+use crate::probe::Probe;
 use crate::tape::{Moment, Rows, Tape};
 
 const LANES: usize = Doubles::LANES;
@@ -152,6 +154,7 @@ struct Group {
     tape: Tape<Lane>,
     right_sides: Vec<usize>,
     rows: Rows<Lane>,
+    probe: Probe<Lane>,
     order: usize,
     /// The rows that a step reads.
     read: Vec<usize>,
@@ -180,6 +183,7 @@ impl<'s> Integrator<'s, Doubles> {
             read,
             right_sides: first.system.right_sides.clone(),
             rows: Rows::new(tape.rows(), first.series.order + 1, &Lanes.zero()),
+            probe: Probe::new(tape.rows(), first.system.variables, &Lanes.zero()),
             order: first.series.order,
             tape,
             arch: pulp::Arch::new(),
@@ -192,27 +196,46 @@ impl<'s> Integrator<'s, Doubles> {
     }
 }
 
+/// Those that take a step of series alone, with their targets.
+type Plain<'f, 's> = [Option<(&'f mut Integrator<'s, Doubles>, f64)>];
+
 impl Group {
-    /// [`crate::series::Series::expand`] of those that ask for it.
-    fn expand(&mut self, flows: &mut [Option<&mut Integrator<'_, Doubles>>]) {
-        let of = |read: &dyn Fn(&Integrator<'_, Doubles>) -> f64| {
-            each(|l| flows.get(l).and_then(|flow| flow.as_deref().map(read)).unwrap_or(1.0))
-        };
-        for state in 0..self.tape.states {
-            *self.rows.at_mut(state, 0) = of(&|flow| flow.state[state]);
+    /// [`crate::series::Series::expand`] of those that ask for it, and the probe at the end of their steps.
+    fn expand(&mut self, flows: &mut Plain<'_, '_>) {
+        fn of(flows: &Plain<'_, '_>, read: &dyn Fn(&Integrator<'_, Doubles>) -> f64) -> Lane {
+            each(|l| flows.get(l).and_then(Option::as_ref).map_or(1.0, |(flow, _)| read(flow)))
         }
-        let time = of(&|flow| flow.clock.high);
-        let switches = flows.iter().flatten().map(|flow| flow.phase.modes.len()).max().unwrap_or(0);
-        let mode = |switch: usize| of(&|flow| f64::from(flow.phase.modes[switch]));
-        let modes: Vec<Lane> = (0..switches).map(mode).collect();
+        for state in 0..self.tape.states {
+            *self.rows.at_mut(state, 0) = of(flows, &|flow| flow.state[state]);
+        }
+        let time = of(flows, &|flow| flow.clock.high);
+        let switches = flows.iter().flatten().map(|(flow, _)| flow.phase.modes.len()).max();
+        let mode = |switch: usize| of(flows, &|flow| f64::from(flow.phase.modes[switch]));
+        let modes: Vec<Lane> = (0..switches.unwrap_or(0)).map(mode).collect();
         let arch = self.arch;
         arch.dispatch(Levels { group: self, time, modes: &modes });
-        for (lane, flow) in flows.iter_mut().enumerate() {
-            let Some(flow) = flow else { continue };
+        let mut lengths = [1.0; LANES];
+        for (lane, (flow, target)) in active(flows) {
             flow.series.take(&self.read, |row| self.rows.row(row).iter().map(|lanes| lanes[lane]));
             flow.expanded = true;
+            let remaining = Clock::new(&Doubles, target).since(&Doubles, &flow.clock);
+            let step = flow.series.step(flow.system, flow.log2_tolerance);
+            lengths[lane] = step.map_or(f64::NAN, |step| step.min(remaining));
+        }
+        let end = each(|l| time[l] + lengths[l]);
+        arch.dispatch(Ends { group: self, time: end, lengths, modes: &modes });
+        for (lane, (flow, _)) in active(flows) {
+            let own = |lanes: &Lane| lanes[lane];
+            let rows = self.probe.rows.data.iter().map(own);
+            flow.series.take_probe(lengths[lane], rows, self.probe.defects.iter().map(own));
         }
     }
+}
+
+fn active<'a, 'f, 's>(
+    flows: &'a mut Plain<'f, 's>,
+) -> impl Iterator<Item = (usize, &'a mut (&'f mut Integrator<'s, Doubles>, f64))> {
+    flows.iter_mut().enumerate().filter_map(|(lane, flow)| Some((lane, flow.as_mut()?)))
 }
 
 /// All levels from level 0 of the states, by the widest vectors that the processor has: the same operations on every
@@ -245,6 +268,27 @@ impl pulp::NullaryFnOnce for Levels<'_> {
     }
 }
 
+/// The places at the ends of steps, likewise.
+struct Ends<'g> {
+    group: &'g mut Group,
+    time: Lane,
+    lengths: Lane,
+    modes: &'g [Lane],
+}
+
+impl pulp::NullaryFnOnce for Ends<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { group: Group { tape, right_sides, rows, probe, .. }, time, lengths, modes } =
+            self;
+        let (sum, scratch) = (&mut Lanes.zero(), &mut Lanes.zero());
+        let mut moment = Moment { time: &time, modes, sum, scratch };
+        probe.place(&Lanes, (tape, right_sides), rows, &lengths, &mut moment);
+    }
+}
+
 impl Together<Doubles> for Group {
     fn round(
         &mut self,
@@ -255,7 +299,7 @@ impl Together<Doubles> for Group {
             .iter_mut()
             .map(|(flow, target)| {
                 let moves = target.is_some_and(|target| !flow.has_reached(&target));
-                (moves && flow.is_plain()).then_some(&mut **flow)
+                (moves && flow.is_plain()).then_some((&mut **flow, (*target)?))
             })
             .collect();
         // One has nobody to wait with.
@@ -311,6 +355,10 @@ mod tests {
             for row in (0..2).chain(flow.system.tape.needed.iter().copied()) {
                 assert_eq!(flow.series.rows.row(row), alone.series.rows.row(row));
             }
+            // And the right sides at its end.
+            let end = |flow: &Integrator<'_, Doubles>| flow.series.probe.clone();
+            let (own, other) = (end(flow), end(alone));
+            assert_eq!((own.rows.data, own.defects), (other.rows.data, other.defects));
         }
         let other = system(2);
         let one = Model::second_order(&(Expression::ACCELERATION + x)).unwrap();
