@@ -29,6 +29,9 @@ impl Whole {
     /// 0.
     pub const ZERO: Self = Self(Word(0));
 
+    /// 1.
+    pub const ONE: Self = Self(Word(1));
+
     /// Whether it is 0.
     #[inline]
     pub fn is_zero(&self) -> bool {
@@ -113,42 +116,69 @@ impl Whole {
         }
     }
 
-    /// gcd(g, self) for g >= 0.
-    pub fn gcd(&self, g: &mut Integer) {
-        match (&self.0, g.to_u64()) {
-            // Often a multiple: one division says so.
-            (Word(n), Some(m)) if m > 0 && n.unsigned_abs().is_multiple_of(m) => {}
-            (Word(n), Some(m)) => {
-                let common = gcd(n.unsigned_abs(), m);
-                if common != m {
-                    *g = Integer::from(common);
-                }
+    /// g <- gcd(g, self) for g >= 0.
+    pub fn gcd(&self, g: &mut Self) {
+        // Of what is long no more than the remainder by a word.
+        let (n, m) = match (&self.0, &g.0) {
+            (Word(n), Word(m)) => (n.unsigned_abs(), m.unsigned_abs()),
+            (Word(0), Long(_)) => return,
+            (Long(n), Word(m)) if *m != 0 => (remainder(n, *m), m.unsigned_abs()),
+            (Word(n), Long(m)) => (remainder(m, *n), n.unsigned_abs()),
+            _ => {
+                let mut common = g.to_integer();
+                common.gcd_mut(&self.to_integer());
+                *g = Self::from(common);
+                return;
             }
-            (Word(n), None) => g.gcd_mut(&Integer::from(*n)),
-            (Long(n), _) => g.gcd_mut(n),
-        }
+        };
+        // Often a multiple: one division says so.
+        let common = if m > 0 && n.is_multiple_of(m) { m } else { gcd(n, m) };
+        *g = Self::from(i128::from(common));
     }
 
-    /// self/n for a divisor n.
-    pub fn divide(&mut self, n: &Integer) {
-        match (&mut self.0, n.to_i64()) {
+    /// The least common multiple of two positive integers.
+    #[must_use]
+    pub fn lcm(&self, other: &Self) -> Self {
+        let mut common = self.clone();
+        other.gcd(&mut common);
+        self.divided(&common).mul(other)
+    }
+
+    /// self <- self/n for a divisor n.
+    pub fn divide(&mut self, n: &Self) {
+        match (&mut self.0, &n.0) {
             // i64::MIN/-1 is no word.
-            (Word(a), Some(n)) if n > 0 => *a /= n,
+            (Word(a), Word(n)) if *n > 0 => *a /= n,
             _ => {
                 let mut quotient = self.to_integer();
-                quotient.div_exact_mut(n);
+                quotient.div_exact_mut(&n.to_integer());
                 *self = Self::from(quotient);
             }
         }
     }
 
+    /// self/n for a divisor n.
+    #[must_use]
+    pub fn divided(&self, n: &Self) -> Self {
+        let mut quotient = self.clone();
+        quotient.divide(n);
+        quotient
+    }
+
     /// self/d, d not zero.
-    pub fn over(&self, d: &Integer) -> Rational {
-        match &self.0 {
-            Word(n) => Rational::from((*n, d)),
-            Long(n) => Rational::from((&**n, d)),
+    pub fn over(&self, d: &Self) -> Rational {
+        match (&self.0, &d.0) {
+            (Word(n), Word(d)) => Rational::from((*n, *d)),
+            (Long(n), Word(d)) => Rational::from((&**n, *d)),
+            (Word(n), Long(d)) => Rational::from((*n, &**d)),
+            (Long(n), Long(d)) => Rational::from((&**n, &**d)),
         }
     }
+}
+
+/// |n mod m|, m not zero.
+fn remainder(n: &Integer, m: i64) -> u64 {
+    Integer::from(n % m.unsigned_abs()).abs().to_u64().unwrap_or_default()
 }
 
 /// By bits.
@@ -234,14 +264,16 @@ mod tests {
                     sum.add_product(&x, &y);
                     assert_eq!(sum, Whole::from(Integer::from(a * b) + c));
                 }
-                let mut g = b.clone().abs();
+                let mut g = Whole::from(b.clone().abs());
                 x.gcd(&mut g);
-                assert_eq!(g, a.clone().gcd(b));
+                assert_eq!(g, Whole::from(a.clone().gcd(b)));
+                if *a > 0 && *b > 0 {
+                    assert_eq!(x.lcm(&y), Whole::from(a.clone().lcm(b)));
+                }
                 if !b.is_zero() {
-                    let mut product = Whole::from(Integer::from(a * b));
-                    product.divide(b);
-                    assert_eq!(product, x);
-                    assert_eq!(x.over(b), Rational::from((a, b)));
+                    let product = Whole::from(Integer::from(a * b));
+                    assert_eq!(product.divided(&y), x);
+                    assert_eq!(x.over(&y), Rational::from((a, b)));
                 }
             }
         }

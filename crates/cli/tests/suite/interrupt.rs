@@ -97,8 +97,8 @@ fn a_limit_is_no_interruption() {
 fn stopped_responses_lack_nothing() {
     let folder = Folder::new("stopped-response");
     let equation = "x'' + x + eps*(x'/5 + x^3) = eps*F*cos((1 + eps*sigma)*t)";
-    let sweep = ["--set", "eps=1/10", "--set", "F=1/2", "--sweep", "sigma=-1..3:100000"];
-    let asked = [&["respond", equation], &sweep[..], &["--limit-seconds", "0.1"]].concat();
+    let sweep = ["--set", "eps=1/10", "--set", "F=1/2", "--sweep", "sigma=-1..3:200000"];
+    let asked = [&["respond", equation], &sweep[..], &["--limit-seconds", "0.3"]].concat();
     let output = folder.program(&asked).output().unwrap();
     let page = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(4), "{page}");

@@ -12,6 +12,7 @@ use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
+use lindstedt_number::Whole;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::amplitudes::scalars::Over;
@@ -76,7 +77,7 @@ pub(super) fn derived(
     let name = |j: &usize| Expression::parameter(&format!("nu_{}", j + 1));
     let named_roots: Vec<_> = first.iter().map(name).collect();
     let roots: Vec<Ball> = squares.iter().filter_map(|square| ring.balls.sqrt(square)).collect();
-    let generators = roots.into_iter().map(|ball| (Enclosure(ball), Integer::from(1))).collect();
+    let generators = roots.into_iter().map(|ball| (Enclosure(ball), Whole::ONE)).collect();
     let rates = Rates { amplitudes, ..job.rates(generators) };
     let scalars = Over::enclosures(ring, middle);
     let named = modes.as_ref().map(Modes::named).unwrap_or_default();
@@ -139,7 +140,7 @@ fn doubtful(
     algebra: &Amplitudes<Over<BallRing>>,
     f: &Element,
 ) -> impl Iterator<Item = Vec<i32>> + use<> {
-    let all = algebra.terms_as(f, &|e: &Enclosure, _: &Integer| e.0.clone());
+    let all = algebra.terms_as(f, &|e: &Enclosure, _: &Whole| e.0.clone());
     let left = |parts: &[Ball; 2]| {
         parts.iter().all(Ball::contains_zero) && parts.iter().any(|ball| ball.abs_upper() > 0)
     };
@@ -151,13 +152,13 @@ fn upward(x: &Float) -> f64 {
 }
 
 fn parts(algebra: &Amplitudes<Over<BallRing>>, f: &Element) -> Vec<Ball> {
-    let all = algebra.terms_as(f, &|e: &Enclosure, _: &Integer| e.0.clone());
+    let all = algebra.terms_as(f, &|e: &Enclosure, _: &Whole| e.0.clone());
     all.into_iter().flat_map(|(_, parts)| parts).collect()
 }
 
 /// The middles of the coefficients; what may vanish is left out, and the radius says within what.
 fn read(algebra: &Amplitudes<Over<BallRing>>, f: &Element, radius: &Cell<f64>) -> Terms {
-    let part = |e: &Enclosure, _: &Integer| {
+    let part = |e: &Enclosure, _: &Whole| {
         let (size, value) = match e.0.contains_zero() {
             true => (e.0.abs_upper(), Rational::new()),
             false => (e.0.radius().clone(), e.0.midpoint().to_rational().unwrap_or_default()),

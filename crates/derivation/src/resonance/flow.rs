@@ -13,9 +13,10 @@ use lindstedt_algebra::{AmplitudeAlgebra, PhaseError};
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_expand::resonance::{checked_residual, energy, resonant};
 use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
+use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::scalars::{Integers, Scalars};
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Rates};
-use rug::{Integer, Rational};
+use rug::Rational;
 
 /// Symbols of the algebra, waves of the forces, and what else is a constant of the coefficients.
 pub(super) struct Symbols<'a, S: Scalars> {
@@ -84,7 +85,7 @@ pub(super) struct Job<'a> {
 impl Job<'_> {
     /// The multiples of 1 and the generators, a unit other than 1 first, in the nu_j, where these are multiples of the unit,
     /// and in the Omega_l; one 0 without a force.
-    pub(super) fn rates<E>(&self, generators: Vec<(E, Integer)>) -> Rates<E> {
+    pub(super) fn rates<E>(&self, generators: Vec<(E, Whole)>) -> Rates<E> {
         let number = self.system.unit.as_ref().map(|_| Rational::new());
         let rate = |rate: &[Rational]| number.iter().chain(rate).cloned().collect::<Vec<_>>();
         let amplitudes = self.system.frequencies.iter();

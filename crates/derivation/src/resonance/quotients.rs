@@ -8,6 +8,7 @@ use lindstedt_coeff::parameters::{LinearForm, ParameterField, ParameterFraction}
 use lindstedt_coeff::polynomial::{PolynomialRing, Symbol};
 use lindstedt_coeff::print::{Style, Term, print_sum};
 use lindstedt_equation::Expression;
+use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::scalars::Over;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes};
 use rug::{Integer, Rational};
@@ -26,7 +27,7 @@ pub(super) fn derived(
         affine: true,
     };
     let parameter = |i: usize| Some(field.parameter(u16::try_from(i).ok()?));
-    let generators = (0..names.len()).filter_map(parameter).map(|e| (e, Integer::from(1)));
+    let generators = (0..names.len()).filter_map(parameter).map(|e| (e, Whole::ONE));
     let rates = job.rates(generators.collect());
     let named: Vec<_> = names.iter().map(|name| Expression::parameter(name)).collect();
     let known = |name: &str| parameter(names.iter().position(|known| known == name)?);
@@ -55,9 +56,8 @@ impl<'a> Quotients<'a> {
         field: &'a ParameterField,
     ) -> Self {
         let mut forms = BTreeSet::new();
-        let read = |e: &ParameterFraction, _: &Integer| {
-            e.denominator().keys().cloned().collect::<Vec<_>>()
-        };
+        let read =
+            |e: &ParameterFraction, _: &Whole| e.denominator().keys().cloned().collect::<Vec<_>>();
         for f in all {
             let lists = algebra.terms_as(f, &read).into_iter().flat_map(|(_, parts)| parts);
             forms.extend(lists.flatten());
@@ -89,7 +89,7 @@ impl<'a> Quotients<'a> {
         f: &AmplitudeElement<ParameterFraction>,
     ) -> Terms {
         let mut sum = Parts::new();
-        let read = |e: &ParameterFraction, _: &Integer| e.clone();
+        let read = |e: &ParameterFraction, _: &Whole| e.clone();
         for (exponents, parts) in algebra.terms_as(f, &read) {
             for (k, part) in parts.iter().enumerate() {
                 let power = |form| part.denominator().get(form).copied().unwrap_or(0);

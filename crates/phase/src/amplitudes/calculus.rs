@@ -5,7 +5,8 @@ use super::{AmplitudeElement, Amplitudes, Multiples, Scalars};
 use lindstedt_algebra::{
     AmplitudeAlgebra, LinearPart, LinearParts, NEAR_MISS, PhaseError, RationalAlgebra, Ring, Split,
 };
-use rug::{Integer, Rational};
+use lindstedt_number::Whole;
+use rug::Rational;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 impl<S: Scalars> Amplitudes<S> {
@@ -373,13 +374,14 @@ impl<S: Scalars> Amplitudes<S> {
         if !small && self.overflows(self.largest(f), largest()) {
             return Ok(self.zero());
         }
-        let common = constants.iter().fold(Integer::from(1), |d, (_, c)| d.lcm(&c.denominator));
+        let common = constants.iter().fold(Whole::ONE, |d, (_, c)| d.lcm(&c.denominator));
         let (mut factors, mut moved) = (FxHashMap::default(), false);
         for (harmonic, c) in constants {
-            let n = Integer::from(&common / &c.denominator);
+            let n = common.divided(&c.denominator);
             let single = c.terms.into_iter().next();
             let (word, [x, y]) = single.unwrap_or_else(|| (0, [scalars.zero(), scalars.zero()]));
-            let [x, y] = if n == 1 { [x, y] } else { [&x, &y].map(|e| scalars.times(e, &n)) };
+            let [x, y] =
+                if n == Whole::ONE { [x, y] } else { [&x, &y].map(|e| scalars.times(e, &n)) };
             let minus = scalars.neg(&y);
             let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
             moved |= word != 0;
@@ -409,7 +411,7 @@ impl<S: Scalars> Amplitudes<S> {
             false if moved => terms.sort_unstable_by_key(|(word, _)| *word),
             false => {}
         }
-        Ok(self.reduced(self.canonical(common * &f.denominator, terms, real)))
+        Ok(self.reduced(self.canonical(common.mul(&f.denominator), terms, real)))
     }
 
     /// Every term times the sum of its harmonic.

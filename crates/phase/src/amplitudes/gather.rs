@@ -6,7 +6,8 @@ use super::sums::Terms;
 use super::words::Word;
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::Ring;
-use rug::{Integer, Rational};
+use lindstedt_number::Whole;
+use rug::Rational;
 use rustc_hash::FxHashMap;
 
 /// The products of which the real and the imaginary part of a coefficient are sums.
@@ -62,7 +63,7 @@ impl<S: Scalars> Amplitudes<S> {
             all.into_iter().filter(known).for_each(|(part, a, b)| lists[part].push((a, b)));
         }
         let sums = lists.map(|list| scalars.sum_of_products(&list));
-        Some(self.single(word?, sums, Integer::from(1), real))
+        Some(self.single(word?, sums, Whole::ONE, real))
     }
 
     /// [`AmplitudeAlgebra::along`](lindstedt_algebra::AmplitudeAlgebra::along), of the monomials whose words are not below
@@ -161,6 +162,6 @@ impl<S: Scalars> Amplitudes<S> {
             true => self.complete(&mut terms),
             false => terms.sort_unstable_by_key(|(word, _)| *word),
         }
-        self.canonical(Integer::from(1), terms, real)
+        self.canonical(Whole::ONE, terms, real)
     }
 }

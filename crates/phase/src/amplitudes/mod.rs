@@ -27,6 +27,7 @@ pub mod words;
 
 pub use delay::{Delay, Late};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
+use lindstedt_number::Whole;
 use rug::{Integer, Rational};
 use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -41,7 +42,7 @@ type Term<E> = (Word, [E; 2]);
 #[derive(Clone, Debug)]
 pub struct AmplitudeElement<E> {
     /// The common denominator, positive.
-    denominator: Integer,
+    denominator: Whole,
     /// Words with real and imaginary numerators, sorted, none of which vanishes.
     terms: Vec<Term<E>>,
     /// Whether it is known to be its own conjugate; only a hint.
@@ -74,12 +75,12 @@ pub struct Rates<E> {
     /// Those in Omega_l.
     pub forces: Vec<Vec<Rational>>,
     /// g_1, g_2, ... with denominators.
-    pub generators: Vec<(E, Integer)>,
+    pub generators: Vec<(E, Whole)>,
 }
 
 impl<E> Rates<E> {
     /// Of one amplitude and one force: the first generator or 1, and the second or 0.
-    pub fn single(generators: Vec<(E, Integer)>) -> Self {
+    pub fn single(generators: Vec<(E, Whole)>) -> Self {
         let unit = |k: usize| (0..=k).map(|i| u32::from(i == k).into()).collect();
         let amplitudes = vec![unit(generators.len().min(1))];
         let forces = vec![if generators.len() > 1 { unit(2) } else { vec![Rational::new()] }];
@@ -269,7 +270,7 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// An element e of S as a constant e/1.
     pub fn constant(&self, e: S::Element) -> AmplitudeElement<S::Element> {
-        self.single(0, [e, self.scalars.zero()], Integer::from(1), true)
+        self.single(0, [e, self.scalars.zero()], Whole::ONE, true)
     }
 
     /// The terms with their coefficients, where those are rational.
@@ -277,7 +278,7 @@ impl<S: Scalars> Amplitudes<S> {
         let term = |exponents, [re, im]: [Option<Rational>; 2]| {
             Some(AmplitudeTerm { exponents, re: re?, im: im? })
         };
-        let read = |e: &S::Element, d: &Integer| self.scalars.quotient(e, d);
+        let read = |e: &S::Element, d: &Whole| self.scalars.quotient(e, d);
         self.terms_as(f, &read).into_iter().map(|(exponents, c)| term(exponents, c)).collect()
     }
 
@@ -285,7 +286,7 @@ impl<S: Scalars> Amplitudes<S> {
     pub fn numerators<'a>(
         &'a self,
         f: &'a AmplitudeElement<S::Element>,
-    ) -> (impl Iterator<Item = ([i32; DIGITS], &'a [S::Element; 2])>, &'a Integer) {
+    ) -> (impl Iterator<Item = ([i32; DIGITS], &'a [S::Element; 2])>, &'a Whole) {
         let n = self.exponents();
         let term = move |(word, c): &'a Term<S::Element>| (self.layout.exponents(*word, n).0, c);
         (f.terms.iter().map(term), &f.denominator)
@@ -296,7 +297,7 @@ impl<S: Scalars> Amplitudes<S> {
     pub fn terms_as<C>(
         &self,
         f: &AmplitudeElement<S::Element>,
-        read: &dyn Fn(&S::Element, &Integer) -> C,
+        read: &dyn Fn(&S::Element, &Whole) -> C,
     ) -> Vec<(Vec<i32>, [C; 2])> {
         let n = self.exponents();
         let term = |(word, c): &Term<S::Element>| {
@@ -377,7 +378,7 @@ impl<S: Scalars> Amplitudes<S> {
         &self,
         word: Word,
         coefficient: [S::Element; 2],
-        denominator: Integer,
+        denominator: Whole,
         real: bool,
     ) -> AmplitudeElement<S::Element> {
         self.canonical(denominator, vec![(word, coefficient)], real)
@@ -391,7 +392,7 @@ impl<S: Scalars> Amplitudes<S> {
     /// Zeros left out, the denominator reduced. The words are sorted.
     fn canonical(
         &self,
-        denominator: Integer,
+        denominator: Whole,
         terms: Vec<Term<S::Element>>,
         real: bool,
     ) -> AmplitudeElement<S::Element> {
@@ -402,24 +403,24 @@ impl<S: Scalars> Amplitudes<S> {
     /// The same where a multiple of all that can be cancelled is known.
     fn canonical_within(
         &self,
-        mut content: Integer,
-        mut denominator: Integer,
+        mut content: Whole,
+        mut denominator: Whole,
         mut terms: Vec<Term<S::Element>>,
         real: bool,
     ) -> AmplitudeElement<S::Element> {
         let scalars = &self.scalars;
         terms.retain(|(_, c)| !c.iter().all(|part| scalars.is_zero(part)));
         if terms.is_empty() {
-            return AmplitudeElement { denominator: Integer::from(1), terms, real: true };
+            return AmplitudeElement { denominator: Whole::ONE, terms, real: true };
         }
         for part in terms.iter().flat_map(|(_, c)| c) {
-            if content == 1 {
+            if content == Whole::ONE {
                 break;
             }
             scalars.content(&mut content, part);
         }
-        if content != 1 {
-            denominator.div_exact_mut(&content);
+        if content != Whole::ONE {
+            denominator.divide(&content);
             for part in terms.iter_mut().flat_map(|(_, c)| c) {
                 scalars.divide(part, &content);
             }
@@ -452,16 +453,19 @@ impl<S: Scalars> Amplitudes<S> {
             let term = |(word, c): &Term<S::Element>| {
                 (*word, c.each_ref().map(|e| self.scalars.scale(e, q)))
             };
-            return self.canonical(Integer::from(1), f.terms.iter().map(term).collect(), f.real);
+            return self.canonical(Whole::ONE, f.terms.iter().map(term).collect(), f.real);
         }
         // What the numerator of q and the denominator of f share is cancelled first; what is left of one divides the other
         // no more.
-        let common = Integer::from(q.numer().gcd_ref(&f.denominator));
-        let n = Integer::from(q.numer().div_exact_ref(&common));
-        let denominator = Integer::from(f.denominator.div_exact_ref(&common)) * q.denom();
+        let [n, rest] = [q.numer(), q.denom()].map(Whole::from);
+        let mut common = f.denominator.clone();
+        n.gcd(&mut common);
+        let n = n.divided(&common);
+        let denominator = f.denominator.divided(&common).mul(&rest);
         let term =
             |(word, c): &Term<S::Element>| (*word, c.each_ref().map(|e| self.scalars.times(e, &n)));
-        let terms = if n == 1 { f.terms.clone() } else { f.terms.iter().map(term).collect() };
-        self.canonical_within(q.denom().clone(), denominator, terms, f.real)
+        let terms =
+            if n == Whole::ONE { f.terms.clone() } else { f.terms.iter().map(term).collect() };
+        self.canonical_within(rest, denominator, terms, f.real)
     }
 }

@@ -4,7 +4,8 @@ use super::sums::{FEW, MANY, Numbering, SPARSE, Sum, Terms, independent};
 use super::words::{DIGITS, Word};
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
-use rug::{Integer, Rational};
+use lindstedt_number::Whole;
+use rug::Rational;
 use std::sync::atomic::Ordering::Relaxed;
 
 pub(super) type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
@@ -27,7 +28,7 @@ impl<S: Scalars> Amplitudes<S> {
         &self,
         sum: &mut Sum<S::Element>,
         [a, b]: [&[Term<S::Element>]; 2],
-        n: &Integer,
+        n: &Whole,
     ) -> Option<()> {
         let scalars = &self.scalars;
         // The real and the imaginary parts, most of which vanish.
@@ -61,7 +62,7 @@ impl<S: Scalars> Amplitudes<S> {
     /// The terms of a real polynomial whose words are above those of their conjugates, twice, and once
     /// those that are their own: half of it, so that h + conj h is twice the polynomial.
     fn half(&self, f: &AmplitudeElement<S::Element>) -> Terms<S::Element> {
-        let two = Integer::from(2);
+        let two = Whole::from(2i64);
         let part = |(word, c): &Term<S::Element>| match word.cmp(&self.mirrored(*word)) {
             std::cmp::Ordering::Less => None,
             std::cmp::Ordering::Equal => Some((*word, c.clone())),
@@ -96,10 +97,14 @@ impl<S: Scalars> Amplitudes<S> {
         &self,
         a: Terms<S::Element>,
         b: &[Term<S::Element>],
-        [m, n]: [&Integer; 2],
+        [m, n]: [&Whole; 2],
     ) -> Terms<S::Element> {
-        let scaled = |c: &[S::Element; 2], n: &Integer| {
-            if *n == 1 { c.clone() } else { c.each_ref().map(|e| self.scalars.times(e, n)) }
+        let scaled = |c: &[S::Element; 2], n: &Whole| {
+            if *n == Whole::ONE {
+                c.clone()
+            } else {
+                c.each_ref().map(|e| self.scalars.times(e, n))
+            }
         };
         let mut list = Vec::with_capacity(a.len() + b.len());
         let mut rest = b.iter().peekable();
@@ -107,10 +112,10 @@ impl<S: Scalars> Amplitudes<S> {
             while let Some((w, d)) = rest.next_if(|(w, _)| *w < word) {
                 list.push((*w, scaled(d, n)));
             }
-            let mut sum = if *m == 1 { c } else { scaled(&c, m) };
+            let mut sum = if *m == Whole::ONE { c } else { scaled(&c, m) };
             if let Some((_, d)) = rest.next_if(|(w, _)| *w == word) {
                 for (x, y) in sum.iter_mut().zip(d) {
-                    match *n == 1 {
+                    match *n == Whole::ONE {
                         true => self.scalars.add(x, y),
                         false => self.scalars.add(x, &self.scalars.times(y, n)),
                     }
@@ -128,8 +133,8 @@ impl<S: Scalars> Amplitudes<S> {
         b: &AmplitudeElement<S::Element>,
         real: bool,
     ) -> AmplitudeElement<S::Element> {
-        let denominator = Integer::from(a.denominator.lcm_ref(&b.denominator));
-        let factors = [&a, b].map(|f| Integer::from(&denominator / &f.denominator));
+        let denominator = a.denominator.lcm(&b.denominator);
+        let factors = [&a, b].map(|f| denominator.divided(&f.denominator));
         let terms = self.merged(a.terms, &b.terms, factors.each_ref());
         self.canonical(denominator, terms, real)
     }
@@ -152,10 +157,8 @@ impl<S: Scalars> Amplitudes<S> {
             let product = self.of_one_word(&pairs, real);
             return product.unwrap_or_else(|| self.gathered(&pairs, real));
         }
-        let lcm = |d: Integer, (a, b): &Pair<'_, _>| {
-            d.lcm(&Integer::from(&a.denominator * &b.denominator))
-        };
-        let mut denominator = pairs().fold(Integer::from(1), lcm);
+        let lcm = |d: Whole, (a, b): &Pair<'_, _>| d.lcm(&a.denominator.mul(&b.denominator));
+        let mut denominator = pairs().fold(Whole::ONE, lcm);
         let ordered: Vec<Pair<'_, _>> = pairs()
             .map(|(a, b)| if a.terms.len() < b.terms.len() { (*a, *b) } else { (*b, *a) })
             .collect();
@@ -167,7 +170,7 @@ impl<S: Scalars> Amplitudes<S> {
         let lists: Vec<_> = lists.collect();
         let add = |mut sum: Sum<S::Element>| {
             for ((a, b), lists) in ordered.iter().zip(&lists) {
-                let n = Integer::from(&denominator / &a.denominator) / &b.denominator;
+                let n = denominator.divided(&a.denominator).divided(&b.denominator);
                 self.accumulate(&mut sum, *lists, &n)?;
             }
             Some(sum.sorted(|| self.scalars.zero()))
@@ -176,11 +179,10 @@ impl<S: Scalars> Amplitudes<S> {
         if real {
             let mut mirror = self.mirror(&terms);
             mirror.sort_unstable_by_key(|(word, _)| *word);
-            let one = Integer::from(1);
-            terms = self.merged(terms, &mirror, [&one, &one]);
+            terms = self.merged(terms, &mirror, [&Whole::ONE, &Whole::ONE]);
             // h + conj h was twice the factor.
             let (half, two) = self.scalars.fraction(&Rational::from((1, 2)));
-            denominator *= two;
+            denominator = denominator.mul(&two);
             for part in terms.iter_mut().flat_map(|(_, c)| c) {
                 *part = self.scalars.product(part, &half);
             }
@@ -219,7 +221,8 @@ impl<S: Scalars> Amplitudes<S> {
     ) -> Option<AmplitudeElement<S::Element>> {
         let [(v, [x, y])] = &a.terms[..] else { return None };
         let minus = self.scalars.neg(y);
-        let mut content = Integer::from(&a.denominator * &b.denominator);
+        let denominator = a.denominator.mul(&b.denominator);
+        let mut content = denominator.clone();
         if let Some(e) = [(x, y), (y, x)]
             .into_iter()
             .find_map(|(e, other)| self.scalars.is_zero(other).then_some(e))
@@ -227,13 +230,12 @@ impl<S: Scalars> Amplitudes<S> {
             // What e and the denominator of b share, and that of a with b.
             content.clone_from(&b.denominator);
             self.scalars.content(&mut content, e);
-            content *= &a.denominator;
+            content = content.mul(&a.denominator);
         }
         let term = |(w, [re, im]): &Term<S::Element>| {
             (v + w, [[(re, x), (im, &minus)], [(re, y), (im, x)]].map(|pairs| self.sum(pairs)))
         };
         let terms = b.terms.iter().map(term).collect();
-        let denominator = Integer::from(&a.denominator * &b.denominator);
         Some(self.canonical_within(content, denominator, terms, a.real && b.real))
     }
 
@@ -255,7 +257,7 @@ impl<S: Scalars> Ring for Amplitudes<S> {
     type Element = AmplitudeElement<S::Element>;
 
     fn zero(&self) -> Self::Element {
-        AmplitudeElement { denominator: Integer::from(1), terms: Vec::new(), real: true }
+        AmplitudeElement { denominator: Whole::ONE, terms: Vec::new(), real: true }
     }
     fn one(&self) -> Self::Element {
         self.monomial(0, true)

@@ -2,7 +2,7 @@
 
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_number::Whole;
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::fmt::Debug;
 
 /// Numerators e of coefficients e/d with a common denominator d; rings that are no integers keep d = 1.
@@ -14,19 +14,19 @@ pub trait Scalars: Sync {
     /// Whether elements cost so much that the products of one monomial are gathered and summed at once; d = 1 then.
     const GATHERS: bool = false;
     /// e and d > 0 of a number.
-    fn numerator(&self, number: &Self::Number) -> (Self::Element, Integer);
+    fn numerator(&self, number: &Self::Number) -> (Self::Element, Whole);
     /// e/d.
-    fn number(&self, e: &Self::Element, d: &Integer) -> Self::Number;
+    fn number(&self, e: &Self::Element, d: &Whole) -> Self::Number;
     /// e and d > 0 with q = e/d.
-    fn fraction(&self, q: &Rational) -> (Self::Element, Integer);
+    fn fraction(&self, q: &Rational) -> (Self::Element, Whole);
     /// e/d as a rational number, if it is one.
-    fn quotient(&self, e: &Self::Element, d: &Integer) -> Option<Rational>;
+    fn quotient(&self, e: &Self::Element, d: &Whole) -> Option<Rational>;
     /// A rational number within the enclosure e/d, if it is a number.
-    fn middle(&self, e: &Self::Element, d: &Integer) -> Option<Rational> {
+    fn middle(&self, e: &Self::Element, d: &Whole) -> Option<Rational> {
         self.quotient(e, d)
     }
     /// n and m > 0 with n/m = d/e; nothing where e cannot be told from zero.
-    fn inverse(&self, e: &Self::Element, d: &Integer) -> Option<(Self::Element, Integer)>;
+    fn inverse(&self, e: &Self::Element, d: &Whole) -> Option<(Self::Element, Whole)>;
     /// 0.
     fn zero(&self) -> Self::Element;
     /// Whether e = 0.
@@ -57,14 +57,14 @@ pub trait Scalars: Sync {
     }
     /// n e for a small n.
     fn multiple(&self, e: &Self::Element, n: i32) -> Self::Element {
-        self.times(e, &Integer::from(n))
+        self.times(e, &Whole::from(i64::from(n)))
     }
     /// n e.
-    fn times(&self, e: &Self::Element, n: &Integer) -> Self::Element;
+    fn times(&self, e: &Self::Element, n: &Whole) -> Self::Element;
     /// g <- gcd(g, e); 1 where elements have no divisors.
-    fn content(&self, g: &mut Integer, e: &Self::Element);
+    fn content(&self, g: &mut Whole, e: &Self::Element);
     /// e <- e/n for a divisor n.
-    fn divide(&self, e: &mut Self::Element, n: &Integer);
+    fn divide(&self, e: &mut Self::Element, n: &Whole);
 }
 
 /// The integers: coefficients in Q.
@@ -75,19 +75,19 @@ impl Scalars for Integers {
     type Element = Whole;
     type Number = Rational;
 
-    fn numerator(&self, number: &Rational) -> (Whole, Integer) {
+    fn numerator(&self, number: &Rational) -> (Whole, Whole) {
         self.fraction(number)
     }
-    fn number(&self, e: &Whole, d: &Integer) -> Rational {
+    fn number(&self, e: &Whole, d: &Whole) -> Rational {
         e.over(d)
     }
-    fn fraction(&self, q: &Rational) -> (Whole, Integer) {
-        (Whole::from(q.numer()), q.denom().clone())
+    fn fraction(&self, q: &Rational) -> (Whole, Whole) {
+        (Whole::from(q.numer()), Whole::from(q.denom()))
     }
-    fn quotient(&self, e: &Whole, d: &Integer) -> Option<Rational> {
+    fn quotient(&self, e: &Whole, d: &Whole) -> Option<Rational> {
         Some(e.over(d))
     }
-    fn inverse(&self, e: &Whole, d: &Integer) -> Option<(Whole, Integer)> {
+    fn inverse(&self, e: &Whole, d: &Whole) -> Option<(Whole, Whole)> {
         (!e.is_zero()).then(|| self.fraction(&e.over(d).recip()))
     }
     fn zero(&self) -> Whole {
@@ -114,13 +114,13 @@ impl Scalars for Integers {
     fn multiple(&self, e: &Whole, n: i32) -> Whole {
         e.mul(&Whole::from(i64::from(n)))
     }
-    fn times(&self, e: &Whole, n: &Integer) -> Whole {
-        e.mul(&Whole::from(n))
+    fn times(&self, e: &Whole, n: &Whole) -> Whole {
+        e.mul(n)
     }
-    fn content(&self, g: &mut Integer, e: &Whole) {
+    fn content(&self, g: &mut Whole, e: &Whole) {
         e.gcd(g);
     }
-    fn divide(&self, e: &mut Whole, n: &Integer) {
+    fn divide(&self, e: &mut Whole, n: &Whole) {
         e.divide(n);
     }
 }
@@ -149,30 +149,30 @@ impl<K: RationalAlgebra> Scalars for Over<K> {
     type Number = K::Element;
     const GATHERS: bool = true;
 
-    fn numerator(&self, number: &K::Element) -> (K::Element, Integer) {
-        (number.clone(), Integer::from(1))
+    fn numerator(&self, number: &K::Element) -> (K::Element, Whole) {
+        (number.clone(), Whole::ONE)
     }
-    fn number(&self, e: &K::Element, d: &Integer) -> K::Element {
-        if *d == 1 { e.clone() } else { self.ring.scale(e, &Rational::from((1, d))) }
+    fn number(&self, e: &K::Element, d: &Whole) -> K::Element {
+        if *d == Whole::ONE { e.clone() } else { self.ring.scale(e, &Whole::ONE.over(d)) }
     }
     fn sum_of_products(&self, pairs: &[(&K::Element, &K::Element)]) -> K::Element {
         self.ring.sum_of_products(pairs)
     }
-    fn fraction(&self, q: &Rational) -> (K::Element, Integer) {
-        (self.ring.rational(q), Integer::from(1))
+    fn fraction(&self, q: &Rational) -> (K::Element, Whole) {
+        (self.ring.rational(q), Whole::ONE)
     }
-    fn quotient(&self, e: &K::Element, _: &Integer) -> Option<Rational> {
+    fn quotient(&self, e: &K::Element, _: &Whole) -> Option<Rational> {
         self.ring.as_rational(e)
     }
-    fn middle(&self, e: &K::Element, _: &Integer) -> Option<Rational> {
+    fn middle(&self, e: &K::Element, _: &Whole) -> Option<Rational> {
         (self.middle)(&self.ring, e)
     }
-    fn inverse(&self, e: &K::Element, d: &Integer) -> Option<(K::Element, Integer)> {
+    fn inverse(&self, e: &K::Element, d: &Whole) -> Option<(K::Element, Whole)> {
         if self.ring.may_vanish(e) {
             return None;
         }
         let inverse = self.ring.reciprocal(e)?;
-        Some((self.ring.scale(&inverse, &Rational::from(d)), Integer::from(1)))
+        Some((self.ring.scale(&inverse, &d.over(&Whole::ONE)), Whole::ONE))
     }
     fn zero(&self) -> K::Element {
         self.ring.zero()
@@ -195,11 +195,11 @@ impl<K: RationalAlgebra> Scalars for Over<K> {
     fn scale(&self, e: &K::Element, q: &Rational) -> K::Element {
         if *q == 1 || self.ring.is_zero(e) { e.clone() } else { self.ring.scale(e, q) }
     }
-    fn times(&self, e: &K::Element, n: &Integer) -> K::Element {
-        self.ring.scale(e, &Rational::from(n))
+    fn times(&self, e: &K::Element, n: &Whole) -> K::Element {
+        self.ring.scale(e, &n.over(&Whole::ONE))
     }
-    fn content(&self, g: &mut Integer, _: &K::Element) {
-        *g = Integer::from(1);
+    fn content(&self, g: &mut Whole, _: &K::Element) {
+        *g = Whole::ONE;
     }
-    fn divide(&self, _: &mut K::Element, _: &Integer) {}
+    fn divide(&self, _: &mut K::Element, _: &Whole) {}
 }

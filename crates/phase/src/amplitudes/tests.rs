@@ -227,7 +227,7 @@ fn numbered_sums_are_hashed_sums() {
     assert_eq!(free.count_ones(), 2);
     let of = |sum: sums::Sum<Whole>, lists: [&[Term<Whole>]; 2]| {
         let mut sum = sum;
-        t.accumulate(&mut sum, lists, &Integer::from(3))?;
+        t.accumulate(&mut sum, lists, &Whole::from(3i64))?;
         Some(sum.sorted(|| Whole::ZERO))
     };
     let numbered = |lists: [&[Term<Whole>]; 2]| {
