@@ -1,8 +1,8 @@
 //! The linear case against the general scheme.
 
-use super::{Affine, Resonant, SlowFlow, check_flow, resonant};
+use super::{Affine, Resonant, SlowFlow, check_flow, linearise, resonant};
 use crate::{Binding, ExpandError, compile, compile_system};
-use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, Ring};
+use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, LinearPart, Ring};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_equation::print::Style;
@@ -114,6 +114,50 @@ fn the_equation_decides() {
     assert!(!route(x() * x()));
     assert!(!route(x() * (Expression::parameter("omega") * Expression::Time).apply(Function::Cos)));
     assert!(!route(x() * x().delayed(Expression::parameter("T"))));
+}
+
+/// What is small need not be linear; the linear part read off the graph is that of the tangents.
+#[test]
+fn the_linear_part_is_read_where_it_is_linear() {
+    let algebra = algebra();
+    let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
+    let late = x.clone().delayed(Expression::parameter("T"));
+    let damped = Expression::parameter("c") * v.clone() + Expression::parameter("B") * late.clone();
+    let small = Expression::Small * (x.clone() * x.clone() * late - v);
+    for (more, reads) in [
+        (Expression::integer(0), true),
+        (damped.clone(), true),
+        (small.clone(), true),
+        (small + damped, true),
+        (x.clone() * x, false),
+    ] {
+        let equation = delay_loop(Expression::integer(0)) + more;
+        let graph = compile_system(&algebra, &[equation], &Named(&algebra), 2).unwrap();
+        let read = Affine::read(&algebra, &graph, 0);
+        assert_eq!(read.is_some(), reads);
+        let Some(read) = read else { continue };
+        let (parts, _) =
+            linearise(&algebra, &graph, &[algebra.twice_real(&algebra.amplitude(0))]).unwrap();
+        let of = |part: &LinearPart<Element>| {
+            (part.stiffness.clone(), part.damping.clone(), part.delayed.clone())
+        };
+        assert_eq!(of(&read.linear_part(&algebra, algebra.delays())), of(&parts[0]));
+    }
+}
+
+/// Another stiffness or damping at order zero is refused.
+#[test]
+fn order_zero_is_the_oscillator_of_the_algebra() {
+    let algebra = algebra();
+    let refused = |more: Expression| {
+        let equation = delay_loop(Expression::integer(0)) + more;
+        let graph = compile_system(&algebra, &[equation], &Named(&algebra), 2).unwrap();
+        resonant(&algebra, &graph, 2, &[], &mut |_| true).map(|_| ())
+    };
+    let other = Err(ExpandError::NotTheFrequency { unknown: 0 });
+    assert_eq!(refused(Expression::integer(0)), Ok(()));
+    assert_eq!(refused(Expression::DISPLACEMENT), other);
+    assert_eq!(refused(Expression::VELOCITY), other);
 }
 
 /// The compiler without time names the delayed term and the force, over an algebra that knows both.
