@@ -51,6 +51,26 @@ fn odd_laws_have_their_exact_rates() {
     }
 }
 
+/// Forces of x alone, however large, hide neither the cycle of van der Pol's law nor its errors; the rate of the phase is that
+/// where the amplitude may be: 5/16 10^6 a^4.
+#[test]
+fn a_stiff_spring_hides_nothing() {
+    let error = |number: &Number| number.error.as_ref().unwrap().parse::<f64>().unwrap();
+    for spring in ["1000000*x^5", "exp(20*x) - 1", "100000000000000*x^3*abs(x)^(1/2)"] {
+        let found = first_order(&format!("x'' + x + eps*({spring} - x'*(1 - x^2)) = 0"), "3");
+        assert_eq!((found.cycles.len(), found.touching.len(), found.steady.len()), (1, 0, 0));
+        let cycle = &found.cycles[0];
+        assert!((value(&cycle.amplitude) - 2.0).abs() <= error(&cycle.amplitude), "{found:?}");
+        assert_is(&found.amplitude_rate, 1.5 - 27.0 / 8.0);
+        if spring == "1000000*x^5" {
+            assert!(
+                (value(&cycle.phase_rate) - 5e6).abs() <= error(&cycle.phase_rate),
+                "{found:?}"
+            );
+        }
+    }
+}
+
 /// f(w) = sgn w - w + w^3/3: a^2 = 4 (1 - v^2), lambda = -(1 - v^2) eps while a < v, and a = v at v^2 = 4/5.
 #[test]
 fn a_polynomial_law_on_a_belt() {

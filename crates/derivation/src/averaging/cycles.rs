@@ -27,8 +27,9 @@ use lindstedt_series::univariate::{
 use rug::Rational;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
+use std::cmp::Ordering;
 
-/// The limit cycles of an averaged oscillator whose amplitude does not vanish with the small parameter.
+/// The limit cycles of an averaged oscillator whose amplitude tends to a number other than 0 with the small parameter.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Cycles {
@@ -221,12 +222,26 @@ pub(super) fn cycles(
     if simple.len() > 1 {
         found.extend(rates.at_roots(simple, digits)?);
     }
-    found.sort_by(|a, b| a.root[0].cmp(&b.root[0]));
+    found.sort_by(by_amplitude);
     let mut degenerate = Vec::new();
     for root in positive_roots(&multiple) {
         degenerate.push(root_of_root(&multiple, &root, digits)?);
     }
     Ok(Some(Cycles { leading_order, cycles: found, degenerate }))
+}
+
+/// Two different roots, in intervals that are made so short that they lie apart.
+fn by_amplitude(a: &Cycle, b: &Cycle) -> Ordering {
+    for doublings in 0..16 {
+        let [x, y] = [a, b].map(|cycle| refined(&cycle.polynomial, &cycle.root, 32 << doublings));
+        if x[1] < y[0] {
+            return Ordering::Less;
+        }
+        if y[1] < x[0] {
+            return Ordering::Greater;
+        }
+    }
+    Ordering::Equal
 }
 
 /// c_0 + c_1 r + ...

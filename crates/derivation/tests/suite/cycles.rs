@@ -161,6 +161,10 @@ fn every_cycle_with_its_sign() {
     let amplitudes: Vec<_> = found.cycles.iter().map(|c| c.amplitude.decimal.as_str()).collect();
     assert_eq!(amplitudes, ["1.17557050458", "1.90211303259"]);
     assert_eq!(found.cycles.iter().map(|c| c.stable).collect::<Vec<_>>(), [true, false]);
+    // (rho - 6/5)(rho^2 - 3): by amplitude, of whatever factor.
+    let found = cycles("x'' + x = eps*(36/5 - 24*x^2 - 96/5*x^4 + 128/5*x^6)*x'", 1);
+    let amplitudes: Vec<_> = found.cycles.iter().map(|c| c.amplitude.decimal.as_str()).collect();
+    assert_eq!(amplitudes, ["1.09544511501", "1.31607401295"]);
     // (rho - 1)^2: the order of the averaging does not decide.
     let found = cycles("x'' + x = eps*(1 - 8*x^2 + 8*x^4)*x'", 2);
     assert_eq!((found.cycles.len(), &*found.degenerate[0].decimal), (0, "1.00000000000"));

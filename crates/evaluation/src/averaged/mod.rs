@@ -89,7 +89,7 @@ pub struct Motion {
     pub has_wall: bool,
     /// The motion at the times asked for, those that are reached.
     pub moments: Option<Vec<Moment>>,
-    /// The limit cycles whose amplitude does not vanish with the small parameter, by increasing amplitude; nothing
+    /// The limit cycles whose amplitude tends to a number other than 0 with the small parameter, by increasing amplitude; nothing
     /// where the coefficients are irrational, no rate depends on a, or a wall is near.
     pub cycles: Option<Vec<SummedCycle>>,
     /// Amplitudes at multiple zeros of the leading rate, where whether there are cycles is not decided.

@@ -71,13 +71,7 @@ fn substituted<A: AmplitudeAlgebra>(
         }
     };
     for residual in residuals {
-        let broken = |c: &A::Element| !algebra.may_vanish(c);
-        if let Some(order) = residual.coefficients.iter().position(broken) {
-            return Err(ExpandError::Residual { order });
-        }
-        if residual.known() <= order {
-            return Err(ExpandError::Residual { order: residual.known() });
-        }
+        vanishes(algebra, &residual, order)?;
         all.extend(residual.coefficients);
     }
     Ok(all)
@@ -99,10 +93,19 @@ pub fn energy<A: AmplitudeAlgebra>(
     if algebra.interrupted() {
         return Err(ExpandError::Interrupted { order: judge.order });
     }
-    match rate.coefficients.iter().position(|c| !algebra.may_vanish(c)) {
-        Some(order) => Err(ExpandError::Residual { order }),
-        None => Ok(sum.coefficients),
-    }
+    vanishes(algebra, &rate, judge.order)?;
+    Ok(sum.coefficients)
+}
+
+/// Whether a series vanishes up to an order.
+fn vanishes<A: AmplitudeAlgebra>(
+    algebra: &A,
+    series: &Series<A::Element>,
+    order: usize,
+) -> Result<(), ExpandError> {
+    let broken = series.coefficients.iter().position(|c| !algebra.may_vanish(c));
+    let short = || Some(series.known()).filter(|known| *known <= order);
+    broken.or_else(short).map_or(Ok(()), |order| Err(ExpandError::Residual { order }))
 }
 
 fn unsupported() -> ExpandError {

@@ -11,21 +11,21 @@ const REACH: f64 = 3.2;
 pub(super) struct Integrals {
     pub values: [f64; 2],
     /// Of each, estimated.
-    pub error: f64,
-    /// The integral of the size of the terms.
-    pub absolute: f64,
+    pub errors: [f64; 2],
+    /// The integrals of the sizes of their terms.
+    pub absolute: [f64; 2],
 }
 
-/// Two integrals over an interval, of an integrand that says the size of its terms as well, by which it is rounded;
+/// Two integrals over an interval, of integrands that say the sizes of their terms as well, by which they are rounded;
 /// integrable singularities at the ends do no harm. In doubles: some hundred integrals are wanted, to 12 digits.
 pub(super) fn tanh_sinh(
     from: f64,
     to: f64,
-    f: &dyn Fn(f64) -> Option<[f64; 3]>,
+    f: &dyn Fn(f64) -> Option<[[f64; 2]; 2]>,
 ) -> Option<Integrals> {
     let half = (to - from) / 2.0;
     if half <= 0.0 {
-        return Some(Integrals { values: [0.0; 2], error: 0.0, absolute: 0.0 });
+        return Some(Integrals { values: [0.0; 2], errors: [0.0; 2], absolute: [0.0; 2] });
     }
     let term = |t: f64| {
         let s = PI / 2.0 * t.sinh();
@@ -33,30 +33,38 @@ pub(super) fn tanh_sinh(
         let near = 2.0 * half / (1.0 + (2.0 * s.abs()).exp());
         let place = if s < 0.0 { from + near } else { to - near };
         let weight = half * PI / 2.0 * t.cosh() / s.cosh().powi(2);
-        Some(f(place)?.map(|value| value * weight))
+        Some(f(place)?.map(|pair| pair.map(|value| value * weight)))
     };
     let mut sums = term(0.0)?;
-    let (mut before, mut size) = ([0.0; 2], sums[2]);
+    let (mut before, mut sizes) = ([0.0; 2], sums.map(|[_, size]| size));
     for level in 0..LEVELS {
         let h = 0.5f64.powi(level as i32);
         let (mut t, stride) = if level == 0 { (1.0, 1.0) } else { (h, 2.0 * h) };
         while t < REACH {
             for t in [t, -t] {
                 let value = term(t)?;
-                size = size.max(value[2]);
-                sums = [0, 1, 2].map(|k| sums[k] + value[k]);
+                for k in [0, 1] {
+                    sizes[k] = sizes[k].max(value[k][1]);
+                    sums[k] = [sums[k][0] + value[k][0], sums[k][1] + value[k][1]];
+                }
             }
             t += stride;
         }
-        let values = [sums[0] * h, sums[1] * h];
-        let change = (values[0] - before[0]).abs().max((values[1] - before[1]).abs());
-        if level > 2 && change < 1e-13 * size || level + 1 == LEVELS {
+        let values = sums.map(|[sum, _]| sum * h);
+        // Neither has converged before the other: they have the same singularities.
+        let change = |k: usize| (values[k] - before[k]).abs() / sizes[k].max(f64::MIN_POSITIVE);
+        let change = change(0).max(change(1));
+        if level > 2 && change < 1e-13 || level + 1 == LEVELS {
             // Of a singularity d^(p-1) the terms fall as exp(-p pi sinh t): what is beyond the last is the last over
             // p pi cosh t, p = 1/2 here; of a pole they do not fall.
             let beyond = 2.0 / (PI * REACH.cosh());
-            let tail = (term(-REACH)?[2] + term(REACH)?[2]) * beyond;
-            let error = change.max(4.0 * f64::EPSILON * size) + tail;
-            return Some(Integrals { values, error, absolute: sums[2] * h });
+            let ends = [term(-REACH)?, term(REACH)?];
+            let error = |k: usize| {
+                let tail = (ends[0][k][1] + ends[1][k][1]) * beyond;
+                change.max(4.0 * f64::EPSILON) * sizes[k] + tail
+            };
+            let absolute = sums.map(|[_, size]| size * h);
+            return Some(Integrals { values, errors: [0, 1].map(error), absolute });
         }
         before = values;
     }

@@ -131,25 +131,32 @@ impl OnePhase {
             Expression::Sum(terms) => terms.as_slice(),
             single => std::slice::from_ref(single),
         };
-        let (mut sums, mut absolute) = ([[0.0; 2]; 2], 0.0);
+        // A force of x does no work in a turn; rounded, it would hide what does.
+        let of_x = |e: &Expression| {
+            e.contains(&Expression::DISPLACEMENT) && !e.contains(&Expression::VELOCITY)
+        };
+        let works: Vec<bool> = terms.iter().map(|e| !of_x(e)).collect();
+        let (mut sums, mut absolute) = ([[0.0; 2]; 2], [0.0; 2]);
         for pair in cuts.windows(2) {
             let [from, to] = *pair else { continue };
             let part = tanh_sinh(from, to, &|psi| {
-                let (mut g, mut absolute) = (0.0, 0.0);
-                for term in terms {
+                let (mut work, mut all) = ([0.0; 2], [0.0; 2]);
+                for (term, works) in terms.iter().zip(&works) {
                     let term = value(term, psi)?;
-                    g += term;
-                    absolute += term.abs();
+                    for sum in [Some(&mut all), works.then_some(&mut work)].into_iter().flatten() {
+                        *sum = [sum[0] + term, sum[1] + term.abs()];
+                    }
                 }
                 let (sin, cos) = psi.sin_cos();
-                Some([g * sin, g * cos, absolute])
+                Some([[work[0] * sin, work[1]], [all[0] * cos, all[1]]])
             })?;
-            for (sum, value) in sums.iter_mut().zip(part.values) {
-                *sum = [sum[0] + value, sum[1] + part.error];
+            for k in [0, 1] {
+                sums[k] = [sums[k][0] + part.values[k], sums[k][1] + part.errors[k]];
+                absolute[k] += part.absolute[k];
             }
-            absolute += part.absolute;
         }
-        if sums.iter().any(|[_, error]| error.is_nan() || *error > UNRESOLVED * absolute) {
+        let lost = |([_, error], size): (&[f64; 2], &f64)| !(*error <= UNRESOLVED * size);
+        if sums.iter().zip(&absolute).any(lost) {
             return None;
         }
         let unsure = self.touching(&value, a);
@@ -223,7 +230,11 @@ impl OnePhase {
             // As fast as the belt A_1 has two slopes, and the symmetric difference is neither.
             exponent[1] += last.abs();
         }
-        Some(PhaseCycle { amplitude: [a, error], exponent, phase: self.rates(a)?.phase })
+        // The rate of the phase where the amplitude may be.
+        let mut phase = self.rates(a)?.phase;
+        let ends = [self.rates(a - error)?.phase[0], self.rates(a + error)?.phase[0]];
+        phase[1] += ends.iter().map(|end| (end - phase[0]).abs()).fold(0.0, f64::max);
+        Some(PhaseCycle { amplitude: [a, error], exponent, phase })
     }
 
     /// The distance to the amplitude that is as fast as the belt.

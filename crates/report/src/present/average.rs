@@ -80,7 +80,7 @@ fn not_listed(result: &Averaging) -> Option<String> {
 fn cycles(mut page: Document, found: &Cycles, small: &str) -> Document {
     let k = found.leading_order;
     page = page.words(match found.cycles.len() {
-        0 => format!("No limit cycle whose amplitude does not vanish with {small}: A_{k}(a) has no simple zero a > 0."),
+        0 => format!("No limit cycle whose amplitude tends to a number other than 0 with {small}: A_{k}(a) has no simple zero a > 0."),
         count => format!(
             "Limit cycles: {count}, at the simple zeros a_0 of A_{k}(a); r = a_0^2, lambda the Floquet exponent per unit of t:"
         ),
