@@ -131,11 +131,7 @@ impl OnePhase {
             Expression::Sum(terms) => terms.as_slice(),
             single => std::slice::from_ref(single),
         };
-        // A force of x does no work in a turn; rounded, it would hide what does.
-        let of_x = |e: &Expression| {
-            e.contains(&Expression::DISPLACEMENT) && !e.contains(&Expression::VELOCITY)
-        };
-        let works: Vec<bool> = terms.iter().map(|e| !of_x(e)).collect();
+        let works: Vec<bool> = terms.iter().map(works).collect();
         let (mut sums, mut absolute) = ([[0.0; 2]; 2], [0.0; 2]);
         for pair in cuts.windows(2) {
             let [from, to] = *pair else { continue };
@@ -155,8 +151,8 @@ impl OnePhase {
                 absolute[k] += part.absolute[k];
             }
         }
-        let lost = |([_, error], size): (&[f64; 2], &f64)| !(*error <= UNRESOLVED * size);
-        if sums.iter().zip(&absolute).any(lost) {
+        let lost = |error: f64, size: f64| error.is_nan() || error > UNRESOLVED * size;
+        if sums.iter().zip(absolute).any(|([_, error], size)| lost(*error, size)) {
             return None;
         }
         let unsure = self.touching(&value, a);
@@ -292,6 +288,11 @@ impl OnePhase {
         let largest = friction.flatten().map(|g| g[0].abs()).fold(0.0, f64::max);
         self.frequency.powi(2) * x <= eps.abs() * largest
     }
+}
+
+/// Whether a term may do work in a turn: a force of x does none; rounded, it would hide what does.
+fn works(term: &Expression) -> bool {
+    term.contains(&Expression::VELOCITY) || !term.contains(&Expression::DISPLACEMENT)
 }
 
 /// Amplitudes up to a largest one.
