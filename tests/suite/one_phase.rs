@@ -249,6 +249,7 @@ fn integrals_that_do_not_converge_are_said() {
         let case = Oscillator::parse(law).unwrap();
         case.first_order(&Exact::parse(largest).unwrap(), &Work::default()).unwrap_err()
     };
+    assert_eq!(refused("x'' + x + eps*(1/x - x') = 0", "3").code(), "no-value");
     for law in ["x'' + x + eps/(x' - 1/2) = 0", "x'' + x + eps*x/(x' - 1/2)^2 = 0"] {
         let found = refused(law, "3");
         assert!(found.code() == "no-value" && found.to_string().contains("converge"), "{found}");
