@@ -71,6 +71,17 @@ fn a_stiff_spring_hides_nothing() {
     }
 }
 
+/// Cycles at a = 1 and sqrt(1 + 10^-5): the rate of the phase, 15/4 a^2, is as unsure as the amplitude.
+#[test]
+fn the_phase_of_close_cycles_is_as_unsure_as_their_amplitude() {
+    let law = "x'*(x^2 + x'^2 - 1)*(x^2 + x'^2 - 1 - 1/100000) + 10*x^3";
+    let found = first_order(&format!("x'' + x + eps*({law}) = 0"), "203/100");
+    assert_eq!(found.cycles.len(), 2, "{found:?}");
+    let rate = &found.cycles[0].phase_rate;
+    let error: f64 = rate.error.as_ref().unwrap().parse().unwrap();
+    assert!((value(rate) - 3.75).abs() <= error && error < 1e-7, "{found:?}");
+}
+
 /// f(w) = sgn w - w + w^3/3: a^2 = 4 (1 - v^2), lambda = -(1 - v^2) eps while a < v, and a = v at v^2 = 4/5.
 #[test]
 fn a_polynomial_law_on_a_belt() {
