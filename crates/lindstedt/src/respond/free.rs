@@ -193,8 +193,9 @@ impl Subject<'_> {
                 point.frequency = self.frequency(*delta, self.rate(Some(point.value.value)));
             }
             response.branches.push(shown);
+            let same = |a: &[f64], b: &[f64], within: f64| free.same(a, b, within);
             let apparent =
-                |it: &&Located| crossings.iter().any(|other| it.is_part_of(other, &course));
+                |it: &&Located| crossings.iter().any(|other| it.is_part_of(other, &course, same));
             for found in changes.iter().filter(|it| !apparent(it)) {
                 // Each of two branches knows their crossing.
                 let near = |it: &&Located| {

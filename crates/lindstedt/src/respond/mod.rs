@@ -149,8 +149,15 @@ impl Oscillator {
             value.states.iter().filter(|states| states.undecided + states.at_edge > 0).count();
         if undecided > 0 {
             let place = if value.parameter.is_some() { "at a value searched " } else { "" };
+            let level = match unforced {
+                Some(free) if free.energy.is_some() && !free.definite => {
+                    ", or an unknown has no part in the conserved energy there"
+                }
+                _ => "",
+            };
             remarks.push(Remark(format!(
-                "{place}the number of steady states is not decided: some cannot be told apart within rounding, or too many boxes"
+                "{place}the number of steady states is not decided: some cannot be told apart within rounding, or too many \
+                 boxes{level}"
             )));
         }
         let combination = subject.rotating.combination.as_ref();

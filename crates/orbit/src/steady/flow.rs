@@ -185,7 +185,7 @@ impl Flow {
     }
 }
 
-fn whole(n: i32) -> Polynomial {
+pub(super) fn whole(n: i32) -> Polynomial {
     Polynomial::constant(Rational::from(n))
 }
 

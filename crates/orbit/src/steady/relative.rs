@@ -17,8 +17,11 @@
 //! balance is beta (E_1^2 |w_1|^2 + E_2^2 |w_2|^2) = 0, so that beta vanishes, up to those terms.
 //!
 //!   E_c g_o = (i (d_o/d_c) E_c Im(g_c) + E_o Re g_c) y.
+//!
+//! Searches go by a and y ([`FreePhase::reduced`]), branches by w and delta ([`FreePhase::branches`]), since a may vanish along them.
 
 use super::branch::follow;
+use super::flow::{times, whole};
 use super::krawczyk::newton;
 use super::survey::{Located, crossing, located};
 use super::{
@@ -63,14 +66,26 @@ const SMALL: f64 = 1e-6;
 
 type Complexes = [Polynomial; 2];
 
-fn times(a: &Complexes, b: &Complexes) -> Complexes {
-    let minus = &a[1] * &Polynomial::constant((-1).into());
-    [(&a[0] * &b[0]) + &(&minus * &b[1]), (&a[0] * &b[1]) + &(&a[1] * &b[0])]
+/// |w_j|^2.
+fn square(w: &[f64], j: usize) -> f64 {
+    w[2 * j].powi(2) + w[2 * j + 1].powi(2)
+}
+
+/// |w_j|^2 as a polynomial in Re w_1, Im w_1, ...
+fn square_of(j: usize) -> Polynomial {
+    let [x, y] = [2 * j, 2 * j + 1].map(Polynomial::variable);
+    (&x * &x) + &(&y * &y)
 }
 
 impl FreePhase {
+    /// w' = G.
+    fn flow(&self) -> Flow {
+        let names: Vec<&str> = self.parameters.iter().map(String::as_str).collect();
+        Flow::of_complex(&self.equations, &names)
+    }
+
     /// n_1, n_2.
-    fn whole(&self) -> [f64; 2] {
+    fn phases(&self) -> [f64; 2] {
         let ratio = Rational::from(&self.weights[1] / &self.weights[0]);
         [ratio.denom().to_f64(), ratio.numer().to_f64()]
     }
@@ -78,8 +93,8 @@ impl FreePhase {
     /// Whether two points lie on one motion, within a distance.
     #[must_use]
     pub fn same(&self, a: &[f64], b: &[f64], within: f64) -> bool {
-        let [first, second] = [a, b].map(|w| [w[0].hypot(w[1]), w[2].hypot(w[3])]);
-        let [n, m] = self.whole();
+        let [first, second] = [a, b].map(|w| [square(w, 0).sqrt(), square(w, 1).sqrt()]);
+        let [n, m] = self.phases();
         let turn = |w: &[f64]| n * w[3].atan2(w[2]) - m * w[1].atan2(w[0]);
         let off = (turn(a) - turn(b)) / (2.0 * PI);
         let apart = 2.0 * PI * (off - off.round()).abs() * first[0].min(first[1]);
@@ -97,9 +112,9 @@ impl FreePhase {
         let ratio = Rational::from(&self.weights[1 - c] / &self.weights[c]);
         let [eta_re, eta_im] = [0, 1].map(Polynomial::variable);
         let energy = self.energy.as_ref().map(|all| all.each_ref().map(|e| e.after(3)));
-        let scale = energy.as_ref().map_or(Polynomial::constant(1.into()), |e| e[c].clone());
+        let scale = energy.as_ref().map_or(whole(1), |e| e[c].clone());
         let turn = times_y(&(&scale * &of_gauge[1]), &ratio);
-        let minus = Polynomial::constant((-1).into());
+        let minus = whole(-1);
         re = (&scale * &re) + &(&turn * &eta_im);
         im = (&scale * &im) + &(&minus * &(&turn * &eta_re));
         let (Some(energy), Some(measure)) = (&energy, &self.measure()) else {
@@ -111,7 +126,7 @@ impl FreePhase {
         let s = Polynomial::variable(2);
         let other = (&eta_re * &eta_re) + &(&eta_im * &eta_im);
         let other = &other * &Polynomial::constant(scales[1].clone().square());
-        let squares = [Polynomial::constant(1.into()), other];
+        let squares = [whole(1), other];
         let squares =
             squares.map(|y| &y * &(&(&s * &s) * &Polynomial::constant(scales[0].clone().square())));
         let size = self.size(measure, 3, [&squares[c], &squares[1 - c]]);
@@ -120,7 +135,7 @@ impl FreePhase {
 
     /// E_1 and E_2 by which A is measured: 1 where they are of no one sign.
     fn measure(&self) -> Option<[Polynomial; 2]> {
-        let one = || Polynomial::constant(1.into());
+        let one = || whole(1);
         let energy = self.energy.as_ref()?;
         Some(if self.definite { energy.clone() } else { [one(), one()] })
     }
@@ -142,8 +157,7 @@ impl FreePhase {
     #[must_use]
     pub fn amplitude(&self, values: &[Option<Value>], w: &[f64]) -> Option<f64> {
         let rows = System::new(&self.measure()?, values).values(&[] as &[f64]);
-        let square =
-            w[0].powi(2) + w[1].powi(2) + rows[1] / rows[0] * (w[2].powi(2) + w[3].powi(2));
+        let square = square(w, 0) + rows[1] / rows[0] * square(w, 1);
         Some(2.0 * square.sqrt())
     }
 
@@ -157,18 +171,14 @@ impl FreePhase {
             let most = (rows[0] / rows[1]).sqrt().max(1.0) * amplitude / 2.0;
             return (most.is_finite() && most > 0.0).then_some(most * (1.0 + 1e-9));
         }
-        let names: Vec<&str> = self.parameters.iter().map(String::as_str).collect();
-        let rows = Flow::of_complex(&self.equations, &names).rows;
+        let rows = self.flow().rows;
         let variables: [Polynomial; 4] = std::array::from_fn(Polynomial::variable);
-        let minus = Polynomial::constant((-1).into());
+        let minus = whole(-1);
         let product = |j: usize| {
             let (x, y) = (&variables[2 * j], &variables[2 * j + 1]);
             times(&[x.clone(), &minus * y], &[rows[2 * j].clone(), rows[2 * j + 1].clone()])
         };
-        let square = |j: usize| {
-            let (x, y) = (&variables[2 * j], &variables[2 * j + 1]);
-            &((x * x) + &(y * y)) * &Polynomial::constant(self.weights[j].clone())
-        };
+        let square = |j: usize| &square_of(j) * &Polynomial::constant(self.weights[j].clone());
         let ([first, turn], [second, other]) = (product(0), product(1));
         let turns = (&turn * &square(1)) + &(&minus * &(&other * &square(0)));
         // The phase that is free makes w_2 real.
@@ -195,10 +205,7 @@ impl FreePhase {
             };
             let mut product = [part(&term.re), part(&term.im)];
             for (sign, n) in [1, -1].into_iter().zip(others) {
-                let eta = [
-                    Polynomial::variable(0),
-                    &Polynomial::variable(1) * &Polynomial::constant(sign.into()),
-                ];
+                let eta = [Polynomial::variable(0), &Polynomial::variable(1) * &whole(sign)];
                 product = (0..*n).fold(product, |product, _| times(&product, &eta));
             }
             sum = [0, 1].map(|k| std::mem::take(&mut sum[k]) + &product[k]);
@@ -213,11 +220,10 @@ impl FreePhase {
     pub fn drift(&self, system: &System, w: &[f64]) -> (f64, Vec<Complex<f64>>) {
         let (values, slopes) = system.derivatives(w);
         let weights = self.weights.each_ref().map(Rational::to_f64);
-        let square = |c: usize| w[2 * c].powi(2) + w[2 * c + 1].powi(2);
-        let c = usize::from(square(1) > square(0));
+        let c = usize::from(square(w, 1) > square(w, 0));
         let [x, y, p, q] = [w[2 * c], w[2 * c + 1], values[2 * c], values[2 * c + 1]];
-        let delta = (x * q - y * p) / square(c) / weights[c];
-        let growth = (x * p + y * q) / square(c);
+        let delta = (x * q - y * p) / square(w, c) / weights[c];
+        let growth = (x * p + y * q) / square(w, c);
         let rows = slopes.chunks_exact(system.variables()).flat_map(|row| &row[..4]);
         let mut slopes: Vec<f64> = rows.copied().collect();
         for (j, d) in weights.iter().enumerate() {
@@ -276,11 +282,7 @@ impl FreePhase {
             .collect();
         let mut rows = Flow::of_complex(&[equation(0), equation(1)], &names).rows;
         rows.push(Polynomial::variable(2 * c + 1));
-        let square = |j: usize| {
-            let [x, y] = [2 * j, 2 * j + 1].map(Polynomial::variable);
-            (&x * &x) + &(&y * &y)
-        };
-        let squares = [square(0), square(1)];
+        let squares = [0, 1].map(square_of);
         let size = self.measure().map(|e| self.size(&e, 4 + extra, squares.each_ref()));
         rows.extend(size);
         Flow::of_rows(rows, self.parameters.clone())
@@ -291,36 +293,56 @@ impl FreePhase {
     #[must_use]
     pub fn rest(&self, values: &[Option<Value>], course: &Course) -> Turning {
         const CELLS: u32 = 400;
-        let names: Vec<&str> = self.parameters.iter().map(String::as_str).collect();
-        let flow = Flow::of_complex(&self.equations, &names).system(values);
+        let flow = self.flow().system(values);
         let [low, high] = course.range;
-        let point = |s: f64| {
-            let at = vec![0.0, 0.0, 0.0, 0.0, s];
-            let (_, slopes) = flow.derivatives(&at);
-            let rows: Vec<f64> =
-                slopes.chunks_exact(5).flat_map(|row| &row[..4]).copied().collect();
-            Point { at, exponents: eigenvalues(4, &rows), change: None }
+        let slopes = |s: f64| -> Vec<f64> {
+            let (_, slopes) = flow.derivatives(&[0.0, 0.0, 0.0, 0.0, s]);
+            slopes.chunks_exact(5).flat_map(|row| &row[..4]).copied().collect()
+        };
+        // The exponents with the largest real part first, and the size of the matrix.
+        let growths = |s: f64| {
+            let rows = slopes(s);
+            let mut exponents = eigenvalues(4, &rows);
+            exponents.sort_by(|a, b| b.re.total_cmp(&a.re));
+            (exponents, rows.iter().fold(0.0f64, |m, x| m.max(x.abs())))
         };
         let points: Vec<Point> = (0..=CELLS)
-            .map(|k| point(low + (high - low) * f64::from(k) / f64::from(CELLS)))
+            .map(|k| low + (high - low) * f64::from(k) / f64::from(CELLS))
+            .map(|s| {
+                let at = vec![0.0, 0.0, 0.0, 0.0, s];
+                Point { at, exponents: eigenvalues(4, &slopes(s)), change: None }
+            })
             .collect();
-        // The real parts from the largest on, and how many are positive: near a double exponent rounding moves them by more than
-        // its unit.
-        let growth = |point: &Point| {
-            let mut parts: Vec<f64> = point.exponents.iter().map(|x| x.re).collect();
-            parts.sort_by(|a, b| b.total_cmp(a));
-            let zero = 1e-11 * point.exponents.iter().fold(0.0f64, |m, x| m.max(x.norm()));
-            let count = parts.iter().filter(|x| **x > zero).count();
-            (parts, count)
+        // How many grow, but for rounding.
+        let growing = |(exponents, size): &(Vec<Complex<f64>>, f64)| {
+            exponents.iter().filter(|x| x.re > 1e-11 * size).count()
+        };
+        // The error of an exponent by rounding, which is that of a square root where two of them meet.
+        let unsure = |(exponents, size): &(Vec<Complex<f64>>, f64), k: usize| {
+            let others = (0..exponents.len()).filter(|j| *j != k);
+            let gap = others.map(|j| (exponents[j] - exponents[k]).norm()).fold(*size, f64::min);
+            1e-14 * size * size / gap.max(1e-7 * size)
+        };
+        // Where an exponent is zero within its error at both ends, it moves by rounding alone.
+        let moves = |cell: &[f64; 2]| {
+            let ends = cell.map(growths);
+            let [from, to] = ends.each_ref().map(growing);
+            from != to
+                && ends.iter().any(|end| {
+                    let k = from.min(to);
+                    end.0[k].re.abs() > unsure(end, k)
+                })
         };
         let mut changes = Vec::new();
         let mut cells: Vec<_> = points.windows(2).map(|two| [two[0].at[4], two[1].at[4]]).collect();
+        cells.retain(moves);
         while let Some([a, b]) = cells.pop() {
-            let [(own, from), (other, to)] = [a, b].map(|s| growth(&point(s)));
+            let ends = [a, b].map(growths);
+            let [from, to] = ends.each_ref().map(growing);
             if from == to {
                 continue;
             }
-            let (x, y) = (own[from.min(to)], other[from.min(to)]);
+            let [x, y] = ends.map(|(exponents, _)| exponents[from.min(to)].re);
             let (middle, width) = (0.5 * (a + b), b - a);
             // A real part that passes zero does so on a line; one that comes from a double exponent, like a root.
             let line = width < 1e-7 * (high - low) && x * y < 0.0;
@@ -345,8 +367,7 @@ impl FreePhase {
         found: &[(Value, Vec<Vec<f64>>)],
         course: &Course,
     ) -> Vec<Turning> {
-        let names: Vec<&str> = self.parameters.iter().map(String::as_str).collect();
-        let flow = Flow::of_complex(&self.equations, &names).system(values);
+        let flow = self.flow().system(values);
         let mut raw: Vec<(Flow, Branch)> = Vec::new();
         for (value, motions) in found {
             let at = value.interval().middle();
@@ -391,7 +412,7 @@ impl FreePhase {
         point: &[f64],
         course: &Course,
     ) -> Option<(Flow, Branch)> {
-        let moduli = [point[0].hypot(point[1]), point[2].hypot(point[3])];
+        let moduli = [0, 1].map(|j| square(point, j).sqrt());
         let first = usize::from(moduli[1] > moduli[0]);
         let mut best: Option<(f64, (Flow, Branch))> = None;
         for c in [first, 1 - first].into_iter().filter(|c| moduli[*c] > SMALL * course.reach) {
@@ -425,6 +446,20 @@ impl FreePhase {
         best.map(|(_, found)| found)
     }
 
+    /// Whether all E_j w_j vanish at a point of a branch: no condition is left that beta = 0.
+    fn is_level(&self, own: &Flow, values: &[Option<Value>], at: &[f64]) -> bool {
+        let Some(energy) = &self.energy else { return false };
+        let open = at[own.unknowns()..].iter().map(|s| Rational::from_f64(*s).map(Value::Rational));
+        let mut open = open;
+        let given: Vec<_> =
+            values.iter().map(|value| value.clone().or_else(|| open.next().flatten())).collect();
+        let rows = System::new(energy, &given).values(&[] as &[f64]);
+        let slope: f64 = (0..2).map(|j| rows[j].powi(2) * square(at, j)).sum();
+        let most =
+            rows.iter().fold(0.0f64, |m, e| m.max(e.powi(2))) * (square(at, 0) + square(at, 1));
+        slope <= SMALL.powi(2) * most
+    }
+
     /// A branch in w alone.
     fn turning(
         &self,
@@ -448,8 +483,9 @@ impl FreePhase {
                 Change::Hopf => Located { change, branch: index, at: unfolded.at, proved: None },
                 _ => located(own, values, reach, (index, &unfolded, change)),
             };
-            // Noise beside a degenerate motion is no crossing.
-            if found.change == Change::Crossing && found.proved.is_none() {
+            // Noise beside a degenerate motion is no crossing; nor is one where the energy has no slope, so that beta is free.
+            let is_crossing = found.change == Change::Crossing;
+            if is_crossing && (found.proved.is_none() || self.is_level(own, values, &found.at)) {
                 continue;
             }
             let mut found = found;

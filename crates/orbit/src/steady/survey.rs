@@ -46,9 +46,14 @@ pub struct Located {
 
 impl Located {
     /// Whether this may be a crossing itself, seen from beside it: a branch that is born of another one turns where they cross, and
-    /// continuation steps over to the other one there; the equations of a fold are singular, so that none is proved.
-    #[must_use]
-    pub fn is_part_of(&self, crossing: &Self, course: &Course) -> bool {
+    /// continuation steps over to the other one there; the equations of a fold are singular, so that none is proved. `same` says
+    /// whether two states are one within a distance.
+    pub fn is_part_of(
+        &self,
+        crossing: &Self,
+        course: &Course,
+        same: impl Fn(&[f64], &[f64], f64) -> bool,
+    ) -> bool {
         let wide = course.range[1] - course.range[0];
         let (Some((value, state)), Some((other, place))) =
             (self.at.split_last(), crossing.at.split_last())
@@ -57,7 +62,7 @@ impl Located {
         };
         matches!(self.change, Change::Fold | Change::Crossing)
             && self.proved.is_none()
-            && state.iter().zip(place).all(|(x, y)| (x - y).abs() < PITCHFORK * course.reach)
+            && same(state, place, PITCHFORK * course.reach)
             && (value - other).abs() < PITCHFORK.powi(2) * wide
     }
 }
@@ -196,7 +201,7 @@ impl Survey<'_> {
             // Each of two branches knows their crossing.
             let same = |other: &Located| {
                 near(&other.at, &found.at, self.course.reach)
-                    || found.is_part_of(other, &self.course)
+                    || found.is_part_of(other, &self.course, is_within)
             };
             if !known.iter().any(same) {
                 known.push(found);
@@ -204,7 +209,7 @@ impl Survey<'_> {
         }
         list.retain(|it| match it.change {
             Change::Hopf => !self.conserves_area(&system, &it.at),
-            _ => !known.iter().any(|other| it.is_part_of(other, &self.course)),
+            _ => !known.iter().any(|other| it.is_part_of(other, &self.course, is_within)),
         });
         list.append(&mut known);
         list.sort_by(|a, b| a.at[a.at.len() - 1].total_cmp(&b.at[b.at.len() - 1]));
@@ -238,7 +243,12 @@ impl Survey<'_> {
 
 /// Whether two points are the same within a part of the reach.
 fn near(a: &[f64], b: &[f64], reach: f64) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() < NEAR * reach)
+    is_within(a, b, NEAR * reach)
+}
+
+/// Whether two points are the same within a distance, unknown by unknown.
+fn is_within(a: &[f64], b: &[f64], distance: f64) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < distance)
 }
 
 /// A change that was found on a branch, with proof if there is one.
@@ -276,5 +286,5 @@ pub(super) fn crossing(a: &[f64], b: &[f64], value: f64) -> Option<Vec<f64>> {
 }
 
 fn is_near(state: &[f64], zero: &Zero, reach: f64) -> bool {
-    zero.middle().iter().zip(state).all(|(a, b)| (a - b).abs() < 1e-7 * reach)
+    is_within(&zero.middle(), state, 1e-7 * reach)
 }
