@@ -36,6 +36,13 @@ impl Power {
         Self { prime, exponent, number: Integer::from(prime).pow(exponent), probe }
     }
 
+    /// The same prime with another exponent.
+    fn lower(&mut self, exponent: u32) {
+        if exponent != self.exponent {
+            (self.exponent, self.number) = (exponent, Integer::from(self.prime).pow(exponent));
+        }
+    }
+
     /// The exponent in c, or that in the denominator if it is smaller; from a residue of c modulo a multiple of the probe.
     fn common(&self, c: &Integer, residue: &Integer) -> u32 {
         if self.prime == 2 {
@@ -62,22 +69,32 @@ impl Power {
     }
 }
 
-impl Denominator {
-    /// `largest` bounds the primes that are looked for.
-    pub(crate) fn new(number: Integer, largest: u32) -> Self {
-        Self::of_primes(number, 2..=largest)
-    }
+fn probes(powers: &[Power]) -> Integer {
+    powers.iter().map(|power| Integer::from(power.probe)).product()
+}
 
-    /// By divisors in ascending order: what divides when its own divisors are taken out is a prime.
-    fn of_primes(number: Integer, divisors: impl Iterator<Item = u32>) -> Self {
+/// The product of powers of primes.
+fn product(powers: impl Iterator<Item = (u32, u32)>) -> Integer {
+    powers.filter(|(_, exponent)| *exponent > 0).fold(
+        Integer::from(1),
+        |product, (prime, exponent)| match prime.checked_pow(exponent) {
+            Some(small) => product * small,
+            None => product * Integer::from(Integer::u_pow_u(prime, exponent)),
+        },
+    )
+}
+
+impl Denominator {
+    /// `largest` bounds the primes that are looked for, by divisors in ascending order: what divides when its own divisors are
+    /// taken out is a prime.
+    pub(crate) fn new(number: Integer, largest: u32) -> Self {
         let (mut rest, mut powers) = (number.clone(), Vec::new());
-        for d in divisors.filter(|d| *d > 1) {
+        for d in 2..=largest {
             if rest.is_divisible_u(d) {
                 powers.push(Power::new(d, rest.remove_factor_mut(&Integer::from(d))));
             }
         }
-        let probes = powers.iter().map(|power| Integer::from(power.probe)).product();
-        Self { number, powers, probes, rest }
+        Self { number, probes: probes(&powers), powers, rest }
     }
 
     pub(crate) fn number(&self) -> &Integer {
@@ -87,38 +104,40 @@ impl Denominator {
     /// The greatest common divisor with c, which is not zero.
     fn common(&self, c: &Integer) -> Integer {
         let residue = Integer::from(c.modulo_ref(&self.probes));
-        let mut common = Integer::from(1);
-        for power in &self.powers {
-            let exponent = power.common(c, &residue);
-            if exponent > 0 {
-                common *= Integer::from(Integer::u_pow_u(power.prime, exponent));
-            }
-        }
-        if self.rest != 1 {
-            common *= Integer::from(self.rest.gcd_ref(c));
-        }
-        common
+        let exponents = self.powers.iter().map(|power| (power.prime, power.common(c, &residue)));
+        let common = product(exponents);
+        if self.rest == 1 { common } else { common * Integer::from(self.rest.gcd_ref(c)) }
     }
 
     /// Divides both by what the denominator and all of the numbers have in common.
     pub(crate) fn divide_by_common<'a>(&mut self, numbers: impl Iterator<Item = &'a mut Integer>) {
         let numbers: Vec<&mut Integer> = numbers.collect();
-        let mut common = self.number.clone();
-        let mut left = self.clone();
+        let (mut left, mut rest) = (self.powers.clone(), self.rest.clone());
+        let mut known = self.probes.clone();
         for c in numbers.iter().filter(|c| !c.is_zero()) {
-            common = left.common(c);
-            left = left.divisor(common.clone());
-            if left.number == 1 {
+            let (residue, count) = (Integer::from(c.modulo_ref(&known)), left.len());
+            left.iter_mut().for_each(|power| power.lower(power.common(c, &residue)));
+            left.retain(|power| power.exponent > 0);
+            if left.len() < count {
+                known = probes(&left);
+            }
+            if rest != 1 {
+                rest.gcd_mut(c);
+            }
+            if left.is_empty() && rest == 1 {
                 return;
             }
         }
+        let common = product(left.iter().map(|power| (power.prime, power.exponent))) * &rest;
         numbers.into_iter().for_each(|c| c.div_exact_mut(&common));
-        *self = self.divisor(Integer::from(self.number.div_exact_ref(&common)));
-    }
-
-    /// A divisor of the number, with its primes.
-    fn divisor(&self, number: Integer) -> Self {
-        Self::of_primes(number, self.powers.iter().map(|power| power.prime))
+        self.number.div_exact_mut(&common);
+        self.rest.div_exact_mut(&rest);
+        for power in &mut self.powers {
+            let shared = left.iter().find(|other| other.prime == power.prime);
+            power.lower(power.exponent - shared.map_or(0, |shared| shared.exponent));
+        }
+        self.powers.retain(|power| power.exponent > 0);
+        self.probes = probes(&self.powers);
     }
 
     /// c over the number as numerator and denominator in lowest terms; nothing for zero.
@@ -193,8 +212,12 @@ mod tests {
             let mut divided = numbers.clone();
             denominator.divide_by_common(divided.iter_mut());
             assert_eq!(denominator.number().clone() * common, number);
+            assert_eq!(denominator.factors().iter().product::<Integer>(), *denominator.number());
             for (small, large) in divided.iter().zip(&numbers) {
                 assert_eq!(Integer::from(small * common), *large);
+                let lowest = denominator.lowest(small.clone()).map(Rational::from);
+                let expected = Rational::from((large, &number));
+                assert_eq!(lowest.unwrap_or_default(), expected);
             }
         }
     }
