@@ -50,6 +50,9 @@ impl Power {
         }
         let (mut last, mut exponent) = (residue.mod_u(self.probe), 0);
         if last == 0 {
+            if self.probe.ilog(self.prime) >= self.exponent {
+                return self.exponent;
+            }
             // The common power can be long, but no longer than the one in the denominator.
             let mut rest = Integer::from(c % &self.number);
             if rest.is_zero() {

@@ -12,32 +12,50 @@ use rug::Integer;
 /// once in 2^80. It is proved afterwards.
 pub(crate) const MARGIN: u32 = 80;
 
-/// The Chinese remainder theorem for the primes of a list of images.
+/// Pairs of primes of a group: its numbers are too short for fast multiplication.
+const GROUP: usize = 16;
+
+/// The Chinese remainder theorem for the primes of a list of images: sum_i d_i M/m_i, the d_i below the m_i, by a tree of products,
+///
+/// ```text
+/// sum over A and B = M_B (sum over A) + M_A (sum over B),
+/// ```
+///
+/// whose long products GMP multiplies fast: a sum over the m_i one by one is quadratic in their number.
 pub(crate) struct Remaindering {
     modulus: Integer,
-    /// M/m_i and its inverse modulo m_i, products of two primes.
-    cofactors: Vec<(Integer, u64)>,
+    /// The inverses of M/m_i modulo m_i, products of two primes.
+    inverses: Vec<u64>,
+    /// M_A/m_i for the m_i of every group A.
+    cofactors: Vec<Integer>,
+    /// The M_A of the groups, of pairs of groups, and so on but for M itself.
+    levels: Vec<Vec<Integer>>,
 }
 
 impl Remaindering {
     pub(crate) fn new(images: &[Image]) -> Self {
-        let mut modulus = Integer::from(1);
-        for image in images {
-            modulus *= image.ring.modulus();
+        let moduli: Vec<u64> = images.iter().map(|image| image.ring.modulus()).collect();
+        let product = |list: &[u64]| list.iter().map(|m| Integer::from(*m)).product::<Integer>();
+        let groups: Vec<Integer> = moduli.chunks(GROUP).map(product).collect();
+        let without = |m: &u64, all: &Integer| Integer::from(all.div_exact_ref(&Integer::from(*m)));
+        let own = moduli.chunks(GROUP).zip(&groups);
+        let cofactors = own.flat_map(|(list, all)| list.iter().map(|m| without(m, all))).collect();
+        let mut levels = vec![groups];
+        while let Some(last) = levels.last().filter(|level| level.len() > 1) {
+            levels.push(last.chunks(2).map(|two| two.iter().product()).collect());
         }
-        let cofactor = |image: &Image| {
-            let ring = &image.ring;
-            let cofactor = Integer::from(modulus.div_exact_ref(&Integer::from(ring.modulus())));
-            let inverse = ring.reciprocal(&ring.integer(&cofactor)).unwrap_or(0);
-            (cofactor, inverse)
+        let modulus = levels.pop().and_then(|mut top| top.pop()).unwrap_or_else(|| 1.into());
+        let inverse = |(image, m): (&Image, &u64)| {
+            let cofactor = image.ring.integer(&without(m, &modulus));
+            image.ring.reciprocal(&cofactor).unwrap_or(0)
         };
-        let cofactors = images.par_iter().map(cofactor).collect();
-        Self { modulus, cofactors }
+        let inverses = images.par_iter().zip(&moduli).map(inverse).collect();
+        Self { modulus, inverses, cofactors, levels }
     }
 
     /// How many primes.
     pub(crate) fn primes(&self) -> usize {
-        2 * self.cofactors.len()
+        2 * self.inverses.len()
     }
 
     /// M >= 2^this.
@@ -85,10 +103,9 @@ impl Remaindering {
 
     /// The inverses of the cofactors times a number.
     fn factors(&self, images: &[Image], number: &Integer) -> Vec<u64> {
-        let pairs = images.iter().zip(&self.cofactors);
-        let factor = |(image, (_, inverse)): (&Image, &(Integer, u64))| {
-            image.ring.mul(inverse, &image.ring.integer(number))
-        };
+        let pairs = images.iter().zip(&self.inverses);
+        let factor =
+            |(image, inverse): (&Image, &u64)| image.ring.mul(inverse, &image.ring.integer(number));
         pairs.map(factor).collect()
     }
 
@@ -104,12 +121,27 @@ impl Remaindering {
     }
 
     fn combined(&self, images: &[Image], n: usize, index: usize, factors: &[u64]) -> Integer {
-        let mut sum = Integer::with_capacity(self.modulus.significant_bits() as usize + 128);
-        for ((image, (cofactor, _)), factor) in images.iter().zip(&self.cofactors).zip(factors) {
-            let ring = &image.ring;
-            let digit = ring.mul(factor, &image.values(n)[index]);
-            sum += cofactor * ring.representative(digit);
+        let digit = |(image, factor): (&Image, &u64)| {
+            let digit = image.ring.mul(factor, &image.values(n)[index]);
+            image.ring.representative(digit)
+        };
+        let digits: Vec<u64> = images.iter().zip(factors).map(digit).collect();
+        let group = |(cofactors, digits): (&[Integer], &[u64])| {
+            let mut sum = Integer::with_capacity(64 * (GROUP + 1));
+            cofactors.iter().zip(digits).for_each(|(cofactor, digit)| sum += cofactor * digit);
+            sum
+        };
+        let groups = self.cofactors.chunks(GROUP).zip(digits.chunks(GROUP));
+        let mut sums: Vec<Integer> = groups.map(group).collect();
+        for level in &self.levels {
+            let pairs = sums.chunks(2).zip(level.chunks(2));
+            let sum = |pair: (&[Integer], &[Integer])| match pair {
+                ([a, b], [of_a, of_b]) => Integer::from(a * of_b) + b * of_a,
+                (rest, _) => rest.iter().sum(),
+            };
+            sums = pairs.map(sum).collect();
         }
+        let sum = sums.pop().unwrap_or_default();
         centred(sum, &self.modulus)
     }
 }

@@ -245,6 +245,26 @@ fn lifted(images: &[Image], n: usize) -> Option<OrderNumbers> {
     remaindering.lift(images, n, &Integer::from(1), &Stop::default())
 }
 
+/// The number that a tree of products gives for residues is the smallest one that has them, whatever the shape of the tree.
+#[test]
+fn numerators_have_the_residues_of_their_images() {
+    with_images(70, |_, images| {
+        for count in [1, 2, 16, 17, 32, 33, 49, 70] {
+            let (images, remaindering) = (&images[..count], Remaindering::new(&images[..count]));
+            let modulus: Integer =
+                images.iter().map(|image| Integer::from(image.ring.modulus())).product();
+            let denominator = Integer::from(48);
+            let found = remaindering.numerator(images, 2, 1, &denominator);
+            assert!(Integer::from(&found << 1).cmp_abs(&modulus).is_le());
+            for image in images {
+                let (ring, value) = (&image.ring, image.values(2)[1]);
+                let numerator = ring.mul(&value, &ring.integer(&denominator));
+                assert_eq!(ring.integer(&found), numerator, "{count}");
+            }
+        }
+    });
+}
+
 /// An image that breaks after it was checked: what is lifted is no short number, or the prime that had no part
 /// in it says so.
 #[test]
