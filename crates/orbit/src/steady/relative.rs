@@ -330,7 +330,7 @@ impl FreePhase {
             from != to
                 && ends.iter().any(|end| {
                     let k = from.min(to);
-                    end.0[k].re.abs() > unsure(end, k)
+                    end.0.get(k).is_some_and(|x| x.re.abs() > unsure(end, k))
                 })
         };
         let mut changes = Vec::new();
@@ -342,7 +342,9 @@ impl FreePhase {
             if from == to {
                 continue;
             }
-            let [x, y] = ends.map(|(exponents, _)| exponents[from.min(to)].re);
+            let [Some(x), Some(y)] = ends.map(|(all, _)| Some(all.get(from.min(to))?.re)) else {
+                continue;
+            };
             let (middle, width) = (0.5 * (a + b), b - a);
             // A real part that passes zero does so on a line; one that comes from a double exponent, like a root.
             let line = width < 1e-7 * (high - low) && x * y < 0.0;
