@@ -35,7 +35,7 @@ pub use algebraic::AlgebraicModes;
 pub use error::ResonanceError;
 pub use forces::Phase;
 pub use invariants::QuadraticInvariant;
-pub use motion::Motion;
+pub use motion::{Motion, Positions};
 pub use normal_mode::{NormalMode, normal_mode};
 pub use polar::{Polar, PolarTerm};
 pub use print::{print_name, print_turns};

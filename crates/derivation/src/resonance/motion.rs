@@ -1,7 +1,7 @@
 //! A truncated slow flow and the equations it belongs to, as systems of first order to integrate.
 //!
 //! At one value of the small parameter, z_j = u_j + i v_j: u_j', v_j' from z_j' = i nu_j z_j + sum eps^n f_{j,n},
-//! and x_j by its rate D x_j along that flow, D as in [`lindstedt_expand::resonance`].
+//! and x_j from them, or where its series is asked for by its rate D x_j along that flow, D as in [`lindstedt_expand::resonance`].
 
 use super::forces::with_phases;
 use super::{AlgebraicModes, Phase, SlowFlow, Terms};
@@ -10,8 +10,9 @@ use lindstedt_equation::{Expression, Function, Unknown};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls};
-use rug::{Rational, ops::Pow};
+use rug::{Float, Rational, ops::Pow};
 use std::collections::BTreeMap;
+use std::ops::{AddAssign, MulAssign, SubAssign};
 
 /// Polynomials in z_1, zbar_1, ..., E, or in u_1, v_1, ..., E: complex coefficients by exponents.
 type Polynomial = BTreeMap<Vec<i32>, [Rational; 2]>;
@@ -25,6 +26,37 @@ pub struct Motion {
     pub rates: Vec<Expression>,
     /// Their values at t = 0.
     pub start: Vec<Rational>,
+}
+
+/// x_1, x_2, ... in z_1, zbar_1, ... and t, of the modes where there are shapes.
+#[derive(Clone, Debug)]
+pub struct Positions {
+    list: Vec<Polynomial>,
+    /// eta_1', eta_2', ...
+    rates: Vec<Rational>,
+}
+
+impl Positions {
+    /// Their values at u_1, v_1, ... and t, to the precision of t.
+    #[must_use]
+    pub fn at(&self, state: &[Float], time: &Float) -> Vec<Float> {
+        let bits = time.prec();
+        let pair = |w: &[Float]| [[w[0].clone(), w[1].clone()], [w[0].clone(), -w[1].clone()]];
+        let z: Vec<[Float; 2]> = state.chunks_exact(2).flat_map(pair).collect();
+        let term = |(key, c): (&Vec<i32>, &[Rational; 2])| {
+            let (powers, turns) = key.split_at(z.len());
+            let turns = turns.iter().zip(&self.rates);
+            let rate: Rational = turns.map(|(m, rate)| Rational::from(rate * *m)).sum();
+            let (sin, cos) = (Float::with_val(bits, rate) * time).sin_cos(Float::new(bits));
+            let c = c.each_ref().map(|c| Float::with_val(bits, c));
+            let all = z.iter().zip(powers);
+            let all = all.flat_map(|(z, n)| std::iter::repeat_n(z, n.unsigned_abs() as usize));
+            let [re, _] = all.fold(times(&c, &[cos, sin]), |product, z| times(&product, z));
+            re
+        };
+        let sum = |x: &Polynomial| x.iter().map(term).fold(Float::new(bits), |sum, x| sum + x);
+        self.list.iter().map(sum).collect()
+    }
 }
 
 /// Values of the symbols and of the small parameter.
@@ -53,8 +85,19 @@ fn add(sum: &mut Polynomial, key: Vec<i32>, [re, im]: [Rational; 2]) {
     entry[1] += im;
 }
 
-fn times([a, b]: &[Rational; 2], [c, d]: &[Rational; 2]) -> [Rational; 2] {
-    [Rational::from(a * c) - Rational::from(b * d), Rational::from(a * d) + Rational::from(b * c)]
+fn times<T>([a, b]: &[T; 2], [c, d]: &[T; 2]) -> [T; 2]
+where
+    T: Clone + for<'a> MulAssign<&'a T> + AddAssign + SubAssign,
+{
+    let product = |x: &T, y: &T| {
+        let mut product = x.clone();
+        product *= y;
+        product
+    };
+    let (mut re, mut im) = (product(a, c), product(a, d));
+    re -= product(b, d);
+    im += product(b, c);
+    [re, im]
 }
 
 fn product(f: &Polynomial, g: &Polynomial) -> Polynomial {
@@ -106,10 +149,19 @@ impl At<'_> {
             + leading.unwrap_or_default() * &self.unit
     }
 
+    fn force_rates(&self) -> Vec<Rational> {
+        (0..self.flow.forces()).map(|l| self.force_rate(l)).collect()
+    }
+
+    /// z_1', z_2', ...
+    fn flows(&self) -> Vec<Polynomial> {
+        self.flow.flow.iter().map(|orders| self.sum(orders, 0)).collect()
+    }
+
     /// D x, whose real part is the rate.
     fn rate(&self, x: &Polynomial, flows: &[Polynomial]) -> Polynomial {
         let first = 2 * flows.len();
-        let turns: Vec<_> = (0..self.flow.forces()).map(|l| self.force_rate(l)).collect();
+        let turns = self.force_rates();
         let mut sum = Polynomial::new();
         for (key, c) in x {
             let turns = key[first..].iter().zip(&turns);
@@ -129,6 +181,12 @@ impl At<'_> {
         }
         sum
     }
+}
+
+/// The real part at z_j = zbar_j = half and E = 1.
+fn at_start(f: &Polynomial, unknowns: usize, half: &Rational) -> Rational {
+    let size = |key: &Vec<i32>| key[..2 * unknowns].iter().sum::<i32>();
+    f.iter().map(|(key, [re, _])| Rational::from(half.pow(size(key))) * re).sum()
 }
 
 /// The polynomial in the u and v of so many unknowns.
@@ -181,9 +239,9 @@ fn tree(f: &Polynomial, part: usize, names: &[String], rates: &[Rational]) -> Ex
 }
 
 impl SlowFlow {
-    /// The truncated slow flow from z_j = amplitude/2 as a system in u_1, v_1, ..., x_1, ..., and the equations
-    /// themselves from the same x_j(0) and x_j'(0) as one in x_1, w_1 = x_1', ...; of the modes where there are
-    /// shapes. Nothing where a symbol has no value.
+    /// The truncated slow flow from z_j = amplitude/2 as a system in u_1, v_1, ..., and the equations themselves from the
+    /// same x_j(0) and x_j'(0) as one in x_1, w_1 = x_1', ...; of the modes where there are shapes. Nothing where a symbol has
+    /// no value.
     #[must_use]
     pub fn motions(
         &self,
@@ -193,41 +251,61 @@ impl SlowFlow {
     ) -> Option<[Motion; 2]> {
         let at = self.at(small, values)?;
         let unknowns = self.unknowns();
-        let mut names: Vec<String> =
+        let names: Vec<String> =
             (1..=unknowns).flat_map(|j| [format!("u_{j}"), format!("v_{j}")]).collect();
-        let flows: Vec<_> = self.flow.iter().map(|orders| at.sum(orders, 0)).collect();
-        let turns: Vec<_> = (0..self.forces()).map(|l| at.force_rate(l)).collect();
+        let flows = at.flows();
+        let turns = at.force_rates();
         let mut rates = Vec::new();
         for flow in flows.iter().map(|flow| cartesian(flow, unknowns)) {
             rates.extend([0, 1].map(|part| tree(&flow, part, &names, &turns)));
         }
         let half = Rational::from(amplitude / 2);
-        let mut start: Vec<_> = (0..2 * unknowns)
-            .map(|i| if i % 2 == 0 { half.clone() } else { Rational::new() })
-            .collect();
-        // z = zbar and E = 1.
-        let at_start = |f: &Polynomial| -> Rational {
-            let size = |key: &Vec<i32>| key[..2 * unknowns].iter().sum::<i32>();
-            f.iter().map(|(key, [re, _])| Rational::from((&half).pow(size(key))) * re).sum()
-        };
-        let mut velocities = Vec::new();
-        for (j, orders) in self.solution.iter().enumerate() {
+        let mut start = Vec::new();
+        for orders in &self.solution {
             let x = at.sum(orders, 0);
-            let rate = at.rate(&x, &flows);
-            rates.push(tree(&cartesian(&rate, unknowns), 0, &names[..2 * unknowns], &turns));
-            start.push(at_start(&x));
-            velocities.push(at_start(&rate));
-            names.push(format!("x_{}", j + 1));
+            start.extend([&x, &at.rate(&x, &flows)].map(|f| at_start(f, unknowns, &half)));
         }
-        let positions = start[2 * unknowns..].to_vec();
-        let equations = self.in_time(&at, values)?;
         let names_of = |j: usize| [format!("x_{}", j + 1), format!("w_{}", j + 1)];
         let full = Motion {
             names: (0..unknowns).flat_map(names_of).collect(),
-            rates: equations,
-            start: positions.into_iter().zip(velocities).flat_map(|(x, v)| [x, v]).collect(),
+            rates: self.in_time(&at, values)?,
+            start,
         };
+        let zero = Rational::new;
+        let start = (0..unknowns).flat_map(|_| [half.clone(), zero()]).collect();
         Some([Motion { names, rates, start }, full])
+    }
+
+    /// The x_j along it; nothing where a symbol has no value.
+    #[must_use]
+    pub fn positions(
+        &self,
+        small: &Rational,
+        values: &dyn Fn(&str) -> Option<Rational>,
+    ) -> Option<Positions> {
+        let at = self.at(small, values)?;
+        let list = self.solution.iter().map(|orders| at.sum(orders, 0)).collect();
+        Some(Positions { list, rates: at.force_rates() })
+    }
+
+    /// The truncated slow flow of [`Self::motions`] with x_1, ... as further states.
+    #[must_use]
+    pub fn with_positions(
+        &self,
+        small: &Rational,
+        values: &dyn Fn(&str) -> Option<Rational>,
+        slow: &Motion,
+    ) -> Option<Motion> {
+        let (at, unknowns, mut all) = (self.at(small, values)?, self.unknowns(), slow.clone());
+        let (flows, turns, half) = (at.flows(), at.force_rates(), slow.start.first()?);
+        for (j, orders) in self.solution.iter().enumerate() {
+            let x = at.sum(orders, 0);
+            let rate = cartesian(&at.rate(&x, &flows), unknowns);
+            all.rates.push(tree(&rate, 0, &slow.names, &turns));
+            all.start.push(at_start(&x, unknowns, half));
+            all.names.push(format!("x_{}", j + 1));
+        }
+        Some(all)
     }
 
     fn at<'a>(

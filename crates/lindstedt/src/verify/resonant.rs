@@ -86,24 +86,27 @@ impl Resonant {
             let names: Vec<&str> = motion.names.iter().map(String::as_str).collect();
             Model::first_order(&names, &motion.rates)
         };
-        // x_j are the last states of the one, every second state of the other.
-        let places: Vec<_> = (2 * unknowns..3 * unknowns).collect();
+        let places: Vec<_> = (0..2 * unknowns).collect();
         let states = (&slow.start[..], &places[..]);
-        let expected =
-            self.run((&model(&slow)?, &Parameters::new()), states, digits + 16, goes_on)?;
-        let expected: Vec<_> = expected.iter().map(|modes| self.of_unknowns(modes)).collect();
+        let found = self.run((&model(&slow)?, &Parameters::new()), states, digits + 16, goes_on)?;
+        let positions = self.flow.positions(small, &value).ok_or(Error::NoValue)?;
+        let expected = found.iter().zip(&self.times);
+        let expected = expected.map(|(state, time)| self.of_unknowns(&positions.at(state, time)));
+        let expected: Vec<_> = expected.collect();
         let written = self.flow.system.shapes.is_some() || full.rates.is_empty();
         let (mut full, parameters, start) = match written {
             false => (model(&full)?, Parameters::new(), full.start),
             true => self.as_written(small, &full)?,
         };
         if let Some(longest) = self.flow.longest_delay(&value) {
+            let slow = self.flow.with_positions(small, &value, &slow).ok_or(Error::NoValue)?;
             let histories = self.history(&slow, longest, digits + 16)?;
             let states = histories.iter().flat_map(|c| [in_time(c), in_time(&derivative(c))]);
             let states: Vec<_> =
                 states.take(if unknowns == 1 { 1 } else { 2 * unknowns }).collect();
             full = full.with_history(&states);
         }
+        // Every second state.
         let places: Vec<_> = (0..unknowns).map(|j| 2 * j).collect();
         let run = |digits| {
             self.run((&full, &parameters), (&start, &places), digits, goes_on).map(|x| x.concat())
