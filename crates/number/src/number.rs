@@ -118,7 +118,12 @@ impl Number {
         }
         let known = ball.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
         let certain = if ball.is_exact() { digits } else { digits.min((known as usize).max(1)) };
-        let decimal = decimal(ball, certain).unwrap_or_else(|| "0".to_owned());
+        // The bits count one digit more than a ball with a large first digit has.
+        let decimal = (1..=certain).rev().find_map(|digits| decimal(ball, digits)).or_else(|| {
+            let centre = Balls::new(64).from_parts(ball.midpoint(), &Float::new(53));
+            decimal(&centre, 1).filter(|_| !ball.contains_zero())
+        });
+        let decimal = decimal.unwrap_or_else(|| "0".to_owned());
         let number = Self::enclosed_as(ball, decimal);
         if ball.is_exact() && number.error.is_none() {
             let exact = Some(number.decimal.clone());
@@ -290,6 +295,15 @@ mod tests {
         let value = Float::with_val(200, rug::float::Constant::Pi);
         assert_eq!(Number::with_error(&value, &error, 30).unwrap().decimal, "3.1416");
         assert_eq!(Number::of_ball(&wide, 30).unwrap().decimal, "3.14");
+        // Bits for twelve digits, of which the last is not certain; and for one that is not.
+        let within = |x: f64, radius: f64| {
+            let centre = balls.enclose(Float::with_val(200, x), Float::new(53));
+            Number::of_ball(&balls.add_error(&centre, &Float::with_val(53, radius)), 12).unwrap()
+        };
+        assert_eq!(within(-0.0700621330698, 6e-14).decimal, "-0.070062133070");
+        let wide_six = within(0.6, 0.1);
+        assert_eq!((&*wide_six.decimal, wide_six.error.as_deref()), ("0.6", Some("1.1e-1")));
+        assert_eq!(within(0.6, 0.7).decimal, "0");
         let nowhere = balls.add_error(&pi, &Float::with_val(53, f64::INFINITY));
         assert_eq!(Number::of_ball(&nowhere, 30), None);
         assert_eq!(Number::of_all_digits(&wide, 30), None);

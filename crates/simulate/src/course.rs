@@ -147,13 +147,14 @@ impl Course {
         latest.filter(|moment| moment.time > 0)
     }
 
-    /// Impacts in sequence before each accumulation.
+    /// Impacts in sequence before each accumulation, whatever switches between them.
     fn runs(&self) -> Vec<usize> {
         let mut run = 0;
         let mut list = Vec::new();
         for event in &self.events {
             match event.kind {
                 EventKind::Impact { .. } => run += 1,
+                EventKind::Switching { .. } => {}
                 EventKind::Accumulation { .. } => list.push(std::mem::take(&mut run)),
                 _ => run = 0,
             }
@@ -161,38 +162,44 @@ impl Course {
         list
     }
 
-    /// Leaves out the last impacts before every accumulation, but for so many.
-    fn shorten(&mut self, common: &[usize]) {
-        let mut accumulations = self.runs().into_iter().zip(common);
+    /// Leaves out what lies between the last of so many impacts and every accumulation; nothing where there is no number.
+    fn shorten(&mut self, common: &[Option<usize>]) {
+        let mut common = common.iter();
         let (mut events, mut points) = (Vec::new(), Vec::new());
         // Points of a section at impacts stand for these impacts, in order.
         let at_impacts = self.points_at_impacts;
         let mut old_points = std::mem::take(&mut self.points).into_iter();
         let mut run: Vec<(Occurrence, Option<Moment>)> = Vec::new();
+        let mut left_out: Vec<(Option<Float>, Float)> = Vec::new();
         for event in std::mem::take(&mut self.events) {
-            if matches!(event.kind, EventKind::Impact { .. }) {
-                run.push((event, if at_impacts { old_points.next() } else { None }));
+            let point = if at_impacts && event.is_impact() { old_points.next() } else { None };
+            if matches!(event.kind, EventKind::Impact { .. } | EventKind::Switching { .. }) {
+                run.push((event, point));
                 continue;
             }
             if matches!(event.kind, EventKind::Accumulation { .. })
-                && let Some((own, common)) = accumulations.next()
+                && let Some(Some(most)) = common.next()
             {
-                run.truncate(run.len() - (own - common).min(run.len()));
+                let impacts = run.iter().enumerate().filter(|(_, (event, _))| event.is_impact());
+                let end = impacts.map(|(k, _)| k + 1).take(*most).last().unwrap_or(0);
+                run.truncate(end);
+                let last = run.last().map(|(last, _)| last).or(events.last());
+                left_out.push((last.map(|last| last.time.clone()), event.time.clone()));
             }
-            for (event, point) in run.drain(..) {
+            for (event, point) in run.drain(..).chain([(event, point)]) {
                 events.push(event);
                 points.extend(point);
             }
-            if at_impacts && event.is_impact() {
-                points.extend(old_points.next());
-            }
-            events.push(event);
         }
         for (event, point) in run {
             events.push(event);
             points.extend(point);
         }
-        points.extend(old_points);
+        let between = |point: &Moment| {
+            let after = |from: &Option<Float>| from.as_ref().is_none_or(|from| point.time > *from);
+            left_out.iter().any(|(from, to)| after(from) && point.time < *to)
+        };
+        points.extend(old_points.filter(|point| at_impacts || !between(point)));
         (self.events, self.points) = (events, points);
     }
 }
@@ -200,7 +207,8 @@ impl Course {
 /// Leaves out the impacts before an accumulation that only one of two integrations told apart:
 /// with fewer digits the sequence is known to be geometric, and jumped over, earlier.
 pub fn align(a: &mut Course, b: &mut Course) {
-    let common: Vec<usize> = a.runs().iter().zip(b.runs()).map(|(m, n)| (*m).min(n)).collect();
+    let pairs = a.runs().into_iter().zip(b.runs());
+    let common: Vec<_> = pairs.map(|(m, n)| (m != n).then_some(m.min(n))).collect();
     a.shorten(&common);
     b.shorten(&common);
 }

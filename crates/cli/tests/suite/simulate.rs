@@ -232,6 +232,32 @@ fn chattering_is_named() {
     assert!(error.abs() < 1e-13, "{error:e}");
 }
 
+/// The same where the force bends at every turn, which is an event between any two impacts: x'' = -2 - x' |x'|/5 above a wall
+/// at 0 that gives back half of the speed, from rest at 1. Falls and flights have closed forms; their sum is where the impacts
+/// accumulate.
+#[test]
+fn chattering_passes_what_switches_between_the_impacts() {
+    let (g, k) = (2.0f64, 0.2f64);
+    // acosh(e^(k h)) = 2 asinh(sqrt((e^(k h) - 1)/2)).
+    let fall = |height: f64| 2.0 * (0.5 * (k * height).exp_m1()).sqrt().asinh() / (g * k).sqrt();
+    let (mut height, mut end) = (1.0, fall(1.0));
+    for _ in 0..80 {
+        let speed = 0.5 * (-g / k * (-2.0 * k * height).exp_m1()).sqrt();
+        height = (k * speed * speed / g).ln_1p() / (2.0 * k);
+        end += (speed * (k / g).sqrt()).atan() / (g * k).sqrt() + fall(height);
+    }
+    let folder = Folder::new("drag");
+    let wall = "[impact]\nposition = \"0\"\ncrossing = \"falling\"\nrestitution = \"1/2\"";
+    let start = "[initial]\nx = \"1\"\nvelocity = \"0\"";
+    let file = folder.problem("x'' + 2 = -x'*abs(x')/5", &[], &format!("{wall}\n{start}"));
+    for way in [&["--digits", "10"][..], &["--f64"]] {
+        let found = json(&[&[&*file, "--until", "5"], way].concat());
+        let [at] = &found["chattering"].as_array().unwrap()[..] else { panic!("{found}") };
+        assert!((float(&at["t"]) - end).abs() < 1e-9, "{way:?}: {at} {end}");
+        assert!(found["complete"] == true && !found["final"]["x"]["error"].is_null());
+    }
+}
+
 /// A chaotic motion without events: the doubles have not one digit at the end, and say so.
 #[test]
 fn doubles_that_lost_every_digit_are_no_answer() {
