@@ -14,3 +14,4 @@ mod recurrences;
 mod section_three;
 mod stick_slip;
 mod tangency;
+mod zero_one;

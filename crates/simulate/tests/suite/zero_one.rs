@@ -1,0 +1,44 @@
+//! The 0-1 test on maps that are known to be regular or chaotic.
+
+use lindstedt_simulate::{go_on, zero_one};
+
+fn logistic(r: f64, count: usize) -> Vec<f64> {
+    let mut x = 0.3;
+    let mut step = || {
+        x = r * x * (1.0 - x);
+        x
+    };
+    (0..200).for_each(|_| {
+        step();
+    });
+    (0..count).map(|_| step()).collect()
+}
+
+#[test]
+fn the_logistic_map() {
+    let k = |r| zero_one(&logistic(r, 3000), &go_on).unwrap().k;
+    assert!(k(3.55).abs() < 0.05, "{}", k(3.55));
+    assert!(k(3.97) > 0.99, "{}", k(3.97));
+}
+
+#[test]
+fn a_quasi_periodic_series_is_regular() {
+    let series: Vec<f64> = (0..3000).map(|n| (f64::from(n) * 2f64.sqrt()).cos() + 0.5).collect();
+    assert!(zero_one(&series, &go_on).unwrap().k.abs() < 0.1);
+}
+
+/// The oscillation that a mean adds to M_c is taken out: it would drown the growth.
+#[test]
+fn a_large_mean_changes_little() {
+    let series = logistic(3.97, 3000);
+    let shifted: Vec<f64> = series.iter().map(|x| x + 20.0).collect();
+    let (k, other) = (zero_one(&series, &go_on).unwrap().k, zero_one(&shifted, &go_on).unwrap().k);
+    assert!((k - other).abs() < 0.02, "{k} {other}");
+}
+
+#[test]
+fn no_answer_without_data() {
+    assert!(zero_one(&[1.0; 99], &go_on).is_none());
+    assert!(zero_one(&[f64::NAN; 200], &go_on).is_none());
+    assert!(zero_one(&[0.0; 200], &go_on).is_some());
+}
