@@ -166,7 +166,7 @@ fn families_of_other_energies() {
     }
     let reversible = Oscillator::parse("x'' + x + eps*(x*x'^2 + 2*y); y'' + y + eps*(2*x + y^3)");
     let refused = reversible.unwrap().set("eps", "1/10").unwrap();
-    let refused = refused.respond(&Respond::default(), &Work::default()).unwrap_err();
+    let refused = refused.respond(&to_order(1), &Work::default()).unwrap_err();
     assert!(refused.to_string().contains("no energy is known"), "{refused}");
     // A form that damping of order two does not keep makes no families.
     let damped = "x'' + x + 2*eps*x*y + eps^2*x'; y'' + 4*y + eps*x^2 + eps^2*y'";
