@@ -29,7 +29,7 @@ pub struct Monomial {
 #[derive(Clone, Debug, Default)]
 pub struct Monomials {
     /// The terms with their rational factors, none of which is zero.
-    pub terms: BTreeMap<Monomial, Rational>,
+    pub terms: Terms,
     /// What the names of atoms and of constants stand for.
     pub atoms: BTreeMap<String, Expression>,
 }
@@ -68,7 +68,14 @@ impl Expression {
     }
 }
 
-pub(crate) type Terms = BTreeMap<Monomial, Rational>;
+/// Monomials with their factors.
+pub type Terms = BTreeMap<Monomial, Rational>;
+
+/// The product of two sums; nothing when that takes too many terms.
+#[must_use]
+pub fn product(a: &Terms, b: &Terms) -> Option<Terms> {
+    Expander::up_to(u32::MAX).product(a, b)
+}
 
 pub(crate) struct Expander {
     pub(crate) atoms: BTreeMap<String, Expression>,
@@ -193,7 +200,7 @@ impl Expander {
             let kept: Vec<_> = b.iter().filter(|(n, _)| n.degree() <= most).collect();
             self.spend(0, kept.len())?;
             for (n, q) in kept {
-                add(&mut product, times(m, n)?, &Rational::from(p * q));
+                add(&mut product, m.times(n)?, &Rational::from(p * q));
             }
         }
         self.spend(product.len(), 0)?;
@@ -201,7 +208,8 @@ impl Expander {
     }
 }
 
-pub(crate) fn add(sum: &mut Terms, monomial: Monomial, q: &Rational) {
+/// Adds a term to a sum, which keeps none with the factor zero.
+pub fn add(sum: &mut Terms, monomial: Monomial, q: &Rational) {
     use std::collections::btree_map::Entry;
     match sum.entry(monomial) {
         Entry::Vacant(entry) => {
@@ -216,26 +224,28 @@ pub(crate) fn add(sum: &mut Terms, monomial: Monomial, q: &Rational) {
     }
 }
 
-fn times(a: &Monomial, b: &Monomial) -> Option<Monomial> {
-    let mut product = a.clone();
-    product.order = a.order.checked_add(b.order)?;
-    product.x = a.x.checked_add(b.x)?;
-    product.velocity = a.velocity.checked_add(b.velocity)?;
-    for (key, n) in &b.atoms {
-        let exponent = product.atoms.entry(key.clone()).or_default();
-        *exponent = exponent.checked_add(*n)?;
-    }
-    for (name, n) in &b.parameters {
-        let exponent = product.parameters.entry(name.clone()).or_default();
-        *exponent = exponent.checked_add(*n)?;
-        if *exponent == 0 {
-            product.parameters.remove(name);
-        }
-    }
-    Some(product)
-}
-
 impl Monomial {
+    /// The product; nothing where an exponent is too large.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Option<Self> {
+        let mut product = self.clone();
+        product.order = self.order.checked_add(other.order)?;
+        product.x = self.x.checked_add(other.x)?;
+        product.velocity = self.velocity.checked_add(other.velocity)?;
+        for (key, n) in &other.atoms {
+            let exponent = product.atoms.entry(key.clone()).or_default();
+            *exponent = exponent.checked_add(*n)?;
+        }
+        for (name, n) in &other.parameters {
+            let exponent = product.parameters.entry(name.clone()).or_default();
+            *exponent = exponent.checked_add(*n)?;
+            if *exponent == 0 {
+                product.parameters.remove(name);
+            }
+        }
+        Some(product)
+    }
+
     /// The power of x, x' and the atoms together.
     pub(crate) fn degree(&self) -> u32 {
         let all = self.atoms.values().fold(self.x, |sum, n| sum.saturating_add(*n));

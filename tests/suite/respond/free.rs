@@ -166,8 +166,23 @@ fn families_of_other_energies() {
     }
     let reversible = Oscillator::parse("x'' + x + eps*(x*x'^2 + 2*y); y'' + y + eps*(2*x + y^3)");
     let refused = reversible.unwrap().set("eps", "1/10").unwrap();
-    let refused = refused.respond(&Respond::default(), &Work::default()).unwrap_err();
+    let refused = refused.respond(&to_order(1), &Work::default()).unwrap_err();
     assert!(refused.to_string().contains("no energy is known"), "{refused}");
+    // A form that damping of order two does not keep makes no families.
+    let damped = "x'' + x + 2*eps*x*y + eps^2*x'; y'' + 4*y + eps*x^2 + eps^2*y'";
+    let damped = Oscillator::parse(damped).unwrap().set("eps", "1/10").unwrap();
+    let refused = damped.respond(&to_order(2), &Work::default()).unwrap_err();
+    assert!(refused.to_string().contains("no bound"), "{refused}");
+    // Products of velocities: the modes are chosen without, where these do not vary.
+    let products = "x'' + x + eps*((1 + 2*k^2)*x^3 - k*y^3); y'' + y + eps*(y^3 - k*x^3)";
+    let states = ask(products, &[("k", "1"), ("eps", "1/10"), ("amplitude", "1")], &to_order(1));
+    assert!(states.states[0].count_proved && states.states[0].count > 0);
+    let products = Oscillator::parse(products).unwrap().set("eps", "1/10").unwrap();
+    let products = products.set("amplitude", "1").unwrap();
+    let sweep = Some(Axis::parse("k=1..2:3").unwrap());
+    let question = Respond { sweep, ..to_order(1) };
+    let refused = products.respond(&question, &Work::default()).unwrap_err();
+    assert!(refused.to_string().contains("products of velocities"), "{refused}");
 }
 
 /// Motions are born of rest where its exponents pass zero. Of two oscillators of van der Pol with dampers k between them these are to

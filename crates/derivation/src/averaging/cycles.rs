@@ -250,6 +250,16 @@ fn value(element: &[Rational], r: &Ball, balls: Balls) -> Ball {
     element.iter().rev().fold(balls.zero(), step)
 }
 
+/// The sign of an element that is not 0 at a root.
+fn is_negative(element: &[Rational], polynomial: &[Rational], root: &[Rational; 2]) -> bool {
+    let at = |bits| {
+        let balls = Balls::new(bits);
+        value(element, &enclosed(polynomial, root, balls), balls)
+    };
+    let apart = (0..16).map(|doublings| at(32 << doublings)).find(|ball| !ball.contains_zero());
+    apart.is_some_and(|ball| ball.is_negative())
+}
+
 /// A root of a polynomial at so many bits.
 fn enclosed(polynomial: &[Rational], root: &[Rational; 2], balls: Balls) -> Ball {
     let [low, high] = refined(polynomial, root, balls.bits());
@@ -323,12 +333,12 @@ impl Rates<Rational> {
             let numbers =
                 |list: &[Vec<Rational>]| list.iter().map(number).collect::<Result<Vec<_>, Error>>();
             let exponent = numbers(&exponent)?;
-            let leading = &exponent[self.leading_order].number.decimal;
+            let leading = &exponent[self.leading_order].element;
             list.push(Cycle {
                 polynomial: modulus.to_vec(),
                 amplitude: root_of_root(modulus, &root, digits)?,
                 squared_amplitude: numbers(&square)?,
-                stable: leading.starts_with('-'),
+                stable: is_negative(leading, modulus, &root),
                 frequency: numbers(&frequency)?,
                 exponent,
                 root,

@@ -10,6 +10,7 @@
 
 use super::ResonanceError;
 use super::modes::{Matrix, Spectrum, inverted, product};
+use lindstedt_equation::Expression;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::univariate::{positive_roots, refined, simple_and_multiple};
 use rug::Rational;
@@ -43,8 +44,10 @@ pub struct AlgebraicModes {
     adjugate: Vec<Matrix>,
     /// Row and column of an entry of the adjugate at each root that does not vanish.
     pivots: Vec<[usize; 2]>,
-    mass_inverse: Matrix,
+    pub(super) mass_inverse: Matrix,
     pub(super) stiffness: Matrix,
+    /// What the equations conserve, in the modes: names would hide it.
+    pub(super) energy: Option<Expression>,
 }
 
 /// Enclosures at a precision.
@@ -102,7 +105,9 @@ impl AlgebraicModes {
         }
         let (mass_inverse, stiffness) = (mass_inverse, stiffness.clone());
         let pivots = Vec::new();
-        let mut modes = Self { polynomial, roots, adjugate, pivots, mass_inverse, stiffness };
+        let energy = None;
+        let mut modes =
+            Self { polynomial, roots, adjugate, pivots, mass_inverse, stiffness, energy };
         let balls = Balls::new(BITS);
         let pivot = |root| {
             let adjugate = modes.adjugate_at(&modes.square(root, balls), balls);

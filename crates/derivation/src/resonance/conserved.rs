@@ -1,14 +1,16 @@
-//! Whether equations x_j'' + f_j = 0 conserve an energy H = sum_j mu_j x_j'^2/2 + V(x), the mu_j not 0, of any sign:
+//! Whether equations x_j'' + f_j = 0 conserve an energy H = x' N x'/2 + V(x), N symmetric and regular, of any signature:
 //!
-//!   sum_j mu_j x_j' f_j = sum_j x_j' dV/dx_j.
+//!   x' N f = sum_i x_i' dV/dx_i.
 //!
-//! A term c x^a of f_i that contains x_j is the derivative of one of V by x_i, so that f_j has
-//! c' x^a x_i/x_j with mu_i c/(a_i + 1) = mu_j c'/a_j; a term c x^a x_j' does no work where f_j has c' x^a x_i' with
-//! mu_i c = -mu_j c' (gyroscopic). That fixes the weights one after the other, where factors that the c have may be parameters. By
-//! Euler a term of the left side, linear in the velocities, gives V one with x_j in the place of x_j', over its degree; then both
-//! sides are compared, term by term.
+//! That is linear in N: the terms of the left side that are not linear in the velocities vanish (a gyroscopic term does no
+//! work), and the others, sum_i x_i' g_i(x), are a differential, dg_i/dx_l = dg_l/dx_i, of each power of eps. The coefficients
+//! are polynomials in the parameters, and N is one in the kernel of the matrix that they form: diagonal where it can be,
+//! which H is to be in the squares of the velocities of modes, else with the products of velocities. N does not depend on eps.
+//! By Euler a term of g_i gives V one with x_i, over its degree.
 
-use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use super::modes::{Matrix, orthogonal};
+use super::parametric::{as_parameter_free, kernel, rank};
+use lindstedt_equation::monomials::{Monomial, Monomials, Terms, add, expand, product};
 use lindstedt_equation::{Expression, Unknown};
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -16,43 +18,26 @@ use std::collections::BTreeMap;
 /// H, multiplied by parameters that weights are divided by; nothing where there is none, or forces or other functions than
 /// polynomials occur.
 pub(super) fn conserved_energy(equations: &[Expression]) -> Option<Expression> {
-    let mut forces: Vec<Monomials> =
-        equations.iter().enumerate().map(|(j, e)| force(j, e)).collect::<Option<_>>()?;
-    let mut power = Terms::new();
-    let mut energy = Terms::new();
-    for (j, (mass, weight)) in weights(&forces)?.iter().enumerate() {
-        let square = times(mass, &velocity(j), 2);
-        *energy.entry(square).or_default() += Rational::from(weight / 2);
-        for (m, q) in &forces[j].terms {
-            let mut product = times(m, &velocity(j), 1);
-            for (name, e) in &mass.parameters {
-                product = times(&product, name, *e);
-            }
-            *power.entry(product).or_default() += Rational::from(q * weight);
-        }
-    }
+    let mut forces = all_forces(equations)?;
     let unknowns = 0..forces.len();
-    let mut potential = Terms::new();
-    for (m, q) in &power {
-        let moving = unknowns.clone().filter(|j| exponent(m, &velocity(*j)) != 0);
-        if let [j] = moving.collect::<Vec<_>>()[..]
-            && exponent(m, &velocity(j)) == 1
-        {
-            let still = times(&times(m, &velocity(j), -1), &place(j), 1);
-            let degree: i32 = unknowns.clone().map(|k| exponent(&still, &place(k))).sum();
-            *potential.entry(still).or_default() += Rational::from(q / degree);
+    let mut energy = Terms::new();
+    for (pair, weight) in &metric(&forces)? {
+        let [j, k] = *pair;
+        let own = Rational::from((1, if j == k { 2 } else { 1 }));
+        let square = power(&velocity(j), 1).times(&power(&velocity(k), 1))?;
+        sum(&mut energy, &product(weight, &Terms::from([(square, own)]))?);
+        for (moving, force) in work(*pair) {
+            for (m, q) in &product(weight, &forces[force].terms)? {
+                // g of x_i' g, i being the one that moves: what moves otherwise was found to cancel.
+                if m.parameters.keys().any(|name| name.starts_with("'v")) {
+                    continue;
+                }
+                let potential = m.times(&power(&place(moving), 1))?;
+                let degree: i32 = unknowns.clone().map(|l| exponent(&potential, &place(l))).sum();
+                add(&mut energy, potential, &Rational::from(q / degree));
+            }
         }
     }
-    for (m, q) in &potential {
-        for j in unknowns.clone().filter(|j| exponent(m, &place(*j)) != 0) {
-            let slope = times(&times(m, &place(j), -1), &velocity(j), 1);
-            *power.entry(slope).or_default() -= Rational::from(q * exponent(m, &place(j)));
-        }
-    }
-    if power.values().any(|q| !q.is_zero()) {
-        return None;
-    }
-    energy.extend(potential);
     let mut named = forces.pop()?;
     forces.into_iter().for_each(|force| named.atoms.extend(force.atoms));
     let tree = |(m, q): (&Monomial, &Rational)| {
@@ -64,10 +49,27 @@ pub(super) fn conserved_energy(equations: &[Expression]) -> Option<Expression> {
     Some(Expression::Sum(energy.iter().map(tree).collect()))
 }
 
-type Terms = BTreeMap<Monomial, Rational>;
+/// Vectors, as rows, in whose coefficients as unknowns N is diagonal; nothing where it is that or is none, and where it depends on
+/// parameters.
+pub(super) fn axes(equations: &[Expression]) -> Option<Matrix> {
+    let metric = metric(&all_forces(equations)?)?;
+    if metric.iter().all(|([j, k], _)| j == k) {
+        return None;
+    }
+    let mut matrix = vec![vec![Rational::new(); equations.len()]; equations.len()];
+    for ([j, k], entry) in &metric {
+        let number = entry.get(&Monomial::default()).filter(|_| entry.len() == 1)?;
+        matrix[*j][*k].clone_from(number);
+        matrix[*k][*j].clone_from(number);
+    }
+    Some(orthogonal(&matrix))
+}
 
-/// mu_j: a product of parameters and a number.
-type Weight = (Monomial, Rational);
+/// Combinations of what is conserved that are looked at.
+const TRIED: usize = 8;
+
+/// The place of an entry of N, j <= k.
+type Pair = [usize; 2];
 
 // No name of a parameter begins like these.
 fn place(j: usize) -> String {
@@ -99,7 +101,7 @@ fn force(j: usize, equation: &Expression) -> Option<Monomials> {
         _ => None,
     });
     let all = expand(&named.canonical())?;
-    let plain = |m: &Monomial| m.x == 0 && m.velocity == 0 && m.atoms.is_empty();
+    let plain = |m: &Monomial| m.is_power(0, 0);
     all.terms.keys().all(plain).then_some(all)
 }
 
@@ -107,74 +109,90 @@ fn exponent(m: &Monomial, name: &str) -> i32 {
     m.parameters.get(name).copied().unwrap_or(0)
 }
 
-/// m name^n.
-fn times(m: &Monomial, name: &str, n: i32) -> Monomial {
-    let mut product = m.clone();
-    let e = exponent(m, name) + n;
-    product.parameters.remove(name);
-    if e != 0 {
-        product.parameters.insert(name.to_owned(), e);
-    }
-    product
+fn power(name: &str, n: i32) -> Monomial {
+    Monomial { parameters: BTreeMap::from([(name.to_owned(), n)]), ..Monomial::default() }
 }
 
-/// mu_j/mu_i, by the first term that says it.
-fn ratio(forces: &[Monomials], i: usize, j: usize) -> Option<Weight> {
-    let (x, v) = ([i, j].map(place), [i, j].map(velocity));
-    // That of equal factors, or else the first.
-    let partner = |m: &Monomial| {
-        let moves = |m: &Monomial| {
-            let own = m.parameters.iter().filter(|(name, _)| unknown(name).is_some());
-            (m.order, own.map(|(name, e)| (name.clone(), *e)).collect::<Vec<_>>())
-        };
-        let terms = &forces[j].terms;
-        terms.get_key_value(m).or_else(|| terms.iter().find(|(other, _)| moves(other) == moves(m)))
-    };
-    forces[i].terms.iter().find_map(|(m, c)| {
-        let (tied, factor) = match (exponent(m, &v[1]), exponent(m, &x[1])) {
-            (0, 0) => return None,
-            (0, a) => {
-                let factor = Rational::from((a, exponent(m, &x[0]) + 1));
-                (times(&times(m, &x[0], 1), &x[1], -1), factor)
-            }
-            _ => (times(&times(m, &v[0], 1), &v[1], -1), Rational::from(-1)),
-        };
-        let (own, other) = partner(&tied)?;
-        let mut product = Monomial::default();
-        for (sign, m) in [(1, &tied), (-1, own)] {
-            for (name, e) in &m.parameters {
-                product = times(&product, name, sign * e);
+fn sum(all: &mut Terms, terms: &Terms) {
+    terms.iter().for_each(|(m, q)| add(all, m.clone(), q));
+}
+
+/// What an entry of N multiplies: the velocities and forces whose products are its work.
+fn work([j, k]: Pair) -> Vec<(usize, usize)> {
+    if j == k { vec![(j, j)] } else { vec![(j, k), (k, j)] }
+}
+
+fn all_forces(equations: &[Expression]) -> Option<Vec<Monomials>> {
+    equations.iter().enumerate().map(|(j, e)| force(j, e)).collect()
+}
+
+/// The entries of a regular N that are not zero, of a diagonal one where there is one.
+fn metric(forces: &[Monomials]) -> Option<Vec<(Pair, Terms)>> {
+    let unknowns = 0..forces.len();
+    let squares = unknowns.clone().map(|j| [j, j]).collect();
+    let all = || unknowns.clone().flat_map(|j| (j..forces.len()).map(move |k| [j, k])).collect();
+    metric_among(forces, squares).or_else(|| metric_among(forces, all()))
+}
+
+fn metric_among(forces: &[Monomials], pairs: Vec<Pair>) -> Option<Vec<(Pair, Terms)>> {
+    let basis = kernel(conditions(forces, &pairs)?, pairs.len())?;
+    // Of unknowns that nothing ties together every combination is conserved: the sum, or one by numbers without a pattern, for
+    // those at which a polynomial, the determinant, vanishes are few.
+    let combination = |patterned: bool, seed: &mut u32| -> Option<Vec<Terms>> {
+        let mut all = vec![Terms::new(); pairs.len()];
+        for vector in &basis {
+            *seed = seed.wrapping_mul(69_069).wrapping_add(1);
+            let scale = if patterned { 1 } else { 1 + (*seed >> 26) };
+            for (entry, own) in all.iter_mut().zip(vector) {
+                sum(entry, &product(own, &as_parameter_free(&scale.into()))?);
             }
         }
-        Some((product, factor * Rational::from(c / other)))
-    })
+        Some(all)
+    };
+    let regular = |entries: &Vec<Terms>| {
+        let mut rows = vec![vec![Terms::new(); forces.len()]; forces.len()];
+        for ([j, k], entry) in pairs.iter().zip(entries) {
+            rows[*j][*k].clone_from(entry);
+            rows[*k][*j].clone_from(entry);
+        }
+        rank(rows) == Some(forces.len())
+    };
+    let mut seed = 1;
+    let mut tried = (0..TRIED).filter_map(|t| combination(t == 0, &mut seed));
+    let entries = tried.find(regular)?;
+    Some(pairs.into_iter().zip(entries).filter(|(_, entry)| !entry.is_empty()).collect())
 }
 
-/// The weights, 1 for unknowns that nothing ties to those before; without parameters below.
-fn weights(forces: &[Monomials]) -> Option<Vec<Weight>> {
-    let mut weights: Vec<Option<Weight>> = vec![None; forces.len()];
-    while let Some(start) = weights.iter().position(Option::is_none) {
-        weights[start] = Some((Monomial::default(), 1.into()));
-        let mut open = vec![start];
-        while let Some(i) = open.pop() {
-            let Some((mass, weight)) = weights[i].clone() else { continue };
-            for (j, own) in weights.iter_mut().enumerate().filter(|(_, own)| own.is_none()) {
-                if let Some((factor, q)) = ratio(forces, i, j) {
-                    let all = factor.parameters.iter();
-                    let mass = all.fold(mass.clone(), |m, (name, e)| times(&m, name, *e));
-                    *own = Some((mass, q * &weight));
-                    open.push(j);
+/// The rows of what vanishes, linear in the entries of N.
+fn conditions(forces: &[Monomials], pairs: &[Pair]) -> Option<Vec<Vec<Terms>>> {
+    let mut rows: BTreeMap<(Option<Pair>, Monomial), Vec<Terms>> = BTreeMap::new();
+    for (column, pair) in pairs.iter().enumerate() {
+        let mut at = |key, factor: &Monomial, q: &Rational| {
+            let row = rows.entry(key).or_insert_with(|| vec![Terms::new(); pairs.len()]);
+            add(&mut row[column], factor.clone(), q);
+        };
+        for (moving, force) in work(*pair) {
+            for (m, q) in &forces[force].terms {
+                let (mut word, mut factor) = (m.clone(), Monomial::default());
+                word.parameters.retain(|name, _| unknown(name).is_some());
+                factor.parameters.clone_from(&m.parameters);
+                factor.parameters.retain(|name, _| unknown(name).is_none());
+                if word.parameters.keys().any(|name| name.starts_with("'v")) {
+                    at((None, word.times(&power(&velocity(moving), 1))?), &factor, q);
+                    continue;
+                }
+                for other in (0..forces.len()).filter(|other| *other != moving) {
+                    let n = exponent(&word, &place(other));
+                    if n == 0 {
+                        continue;
+                    }
+                    let slope = word.times(&power(&place(other), -1))?;
+                    let sign = if moving < other { n } else { -n };
+                    let both = [moving.min(other), moving.max(other)];
+                    at((Some(both), slope), &factor, &Rational::from(q * sign));
                 }
             }
         }
     }
-    let mut weights: Vec<Weight> = weights.into_iter().flatten().collect();
-    let below = |(mass, _): &Weight| {
-        let below = mass.parameters.iter().find(|(_, e)| **e < 0);
-        below.map(|(name, e)| (name.clone(), -e))
-    };
-    while let Some((name, e)) = weights.iter().find_map(below) {
-        weights.iter_mut().for_each(|(mass, _)| *mass = times(mass, &name, e));
-    }
-    weights.iter().all(|(_, weight)| !weight.is_zero()).then_some(weights)
+    Some(rows.into_values().collect())
 }

@@ -173,7 +173,11 @@ impl Job<'_> {
             other => (Some(found.order()), other?),
         };
         let conserved = checked.filter(|_| !delays.any() && system.forces.is_empty());
-        let energy = match conserved.and_then(|_| conserved_energy(&system.equations)) {
+        let known = || match &system.algebraic {
+            Some(modes) => modes.energy.clone(),
+            None => conserved_energy(&system.equations),
+        };
+        let energy = match conserved.and_then(|_| known()) {
             None => Vec::new(),
             Some(sum) => {
                 // As the rest of an equation of its own.

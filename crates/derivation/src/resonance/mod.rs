@@ -24,6 +24,7 @@ mod json;
 mod modes;
 mod motion;
 mod normal_mode;
+mod parametric;
 mod polar;
 mod print;
 mod quotients;
@@ -100,8 +101,9 @@ pub struct SlowFlow {
     /// The smallest divisor of every order and unknown.
     pub nearest: Vec<Nearest>,
     /// Where the equations derive from a potential, but for terms of velocities that do no work together: the energy
-    /// sum_j mu_j x_j'^2/2 + V order by order, mu_1 = 1 or a product of parameters by which others are divided, which was found to
-    /// be conserved by the flow, identically. So it contains no fast phase. The mu_j may differ in sign. Else empty.
+    /// x' N x'/2 + V order by order, N regular, of any signature, with the first entry 1 or parameters by which others are divided,
+    /// which was found to be conserved by the flow, identically. So it contains no fast phase. N is diagonal, unless it depends on
+    /// parameters. Else empty.
     pub energy: Vec<Terms>,
     /// Where frequencies are irrational: what the coefficients are known within. Those given are in the middle.
     pub enclosed: Option<Enclosed>,

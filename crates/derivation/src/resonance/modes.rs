@@ -34,17 +34,77 @@ impl Spectrum {
     /// With mode k before the others.
     pub(super) fn with_first(self, k: usize) -> Self {
         let n = self.squares.len();
-        let identity = || {
-            let row = |i| (0..n).map(|j| Rational::from(u32::from(i == j))).collect();
-            (0..n).map(row).collect()
-        };
-        let mut shapes: Matrix = self.shapes.unwrap_or_else(identity);
+        let mut shapes: Matrix = self.shapes.unwrap_or_else(|| identity(n));
         let (mut squares, mut inverse) = (self.squares, self.inverse);
         squares[..=k].rotate_right(1);
         inverse[..=k].rotate_right(1);
         shapes.iter_mut().for_each(|row| row[..=k].rotate_right(1));
         Self { squares, shapes: Some(shapes), inverse }
     }
+
+    /// With other vectors of the same spaces of equal frequencies, the rows of a matrix, as modes.
+    pub(super) fn with_axes(&self, axes: &Matrix) -> Option<Self> {
+        let own = self.shapes.clone().unwrap_or_else(|| identity(axes.len()));
+        let mut columns = product(axes, &transposed(&own));
+        columns.iter_mut().for_each(|column| from_first(column));
+        let shapes = transposed(&columns);
+        // P^-1 M^-1 with another P.
+        let change = product(&inverted(&shapes)?, &own);
+        let inverse = product(&change, &self.inverse);
+        Some(Self { squares: self.squares.clone(), shapes: Some(shapes), inverse })
+    }
+}
+
+fn identity(n: usize) -> Matrix {
+    (0..n).map(|i| (0..n).map(|j| Rational::from(u32::from(i == j))).collect()).collect()
+}
+
+fn transposed(matrix: &Matrix) -> Matrix {
+    (0..matrix.len()).map(|j| matrix.iter().map(|row| row[j].clone()).collect()).collect()
+}
+
+/// Shapes are read from the first unknown.
+fn from_first(vector: &mut [Rational]) {
+    let first = vector.iter().find(|x| !x.is_zero()).cloned();
+    first.iter().for_each(|first| vector.iter_mut().for_each(|x| *x /= first));
+}
+
+/// Vectors, as rows, that a symmetric regular form is diagonal in: e_1, e_2, ..., each freed of its part along those before
+/// (Gram and Schmidt), of which one that is orthogonal to itself is joined by one that it is not orthogonal to. So each stays within
+/// the e_k that the form ties together.
+pub(super) fn orthogonal(form: &Matrix) -> Matrix {
+    let n = form.len();
+    let mut vectors = identity(n);
+    let pairing = |a: &[Rational], b: &[Rational]| -> Rational {
+        let parts = a.iter().zip(form).map(|(x, row)| {
+            let along: Rational = row.iter().zip(b).map(|(f, y)| Rational::from(f * y)).sum();
+            along * x
+        });
+        parts.sum()
+    };
+    for k in 0..n {
+        let own = vectors[k].clone();
+        if pairing(&own, &own).is_zero()
+            && let Some(other) = vectors[k + 1..].iter().find(|v| !pairing(&own, v).is_zero())
+        {
+            // 2 (v, w) + (w, w) and -2 (v, w) + (w, w) are not both zero.
+            let joined = |sign: i32| -> Vec<Rational> {
+                own.iter().zip(other).map(|(x, y)| Rational::from(y * sign) + x).collect()
+            };
+            vectors[k] =
+                [1, -1].map(joined).into_iter().find(|v| !pairing(v, v).is_zero()).unwrap_or(own);
+        }
+        let own = vectors[k].clone();
+        let square = pairing(&own, &own);
+        if square.is_zero() {
+            continue;
+        }
+        for vector in &mut vectors[k + 1..] {
+            let part = pairing(&own, vector) / &square;
+            vector.iter_mut().zip(&own).for_each(|(x, y)| *x -= Rational::from(&part * y));
+        }
+    }
+    vectors
 }
 
 /// The modes of M x'' + K x. Where both are diagonal the unknowns stay what they are.
@@ -136,14 +196,10 @@ pub(super) fn kernel(matrix: Matrix, n: usize) -> Vec<Vec<Rational>> {
         for (row, pivot) in rows.iter().zip(&pivots) {
             vector[*pivot] = Rational::from(-&row[free]);
         }
+        from_first(&mut vector);
         vector
     };
-    // Shapes read from the first unknown.
-    let scaled = |vector: Vec<Rational>| {
-        let first = vector.iter().find(|x| !x.is_zero()).cloned().unwrap_or_else(|| 1.into());
-        vector.into_iter().map(|x| x / &first).collect()
-    };
-    (0..n).filter(|j| !pivots.contains(j)).map(vector).map(scaled).collect()
+    (0..n).filter(|j| !pivots.contains(j)).map(vector).collect()
 }
 
 /// The eigenvalues with their multiplicities, increasing, where all of them are rational.

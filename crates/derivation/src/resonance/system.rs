@@ -1,6 +1,7 @@
 //! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
 
 use super::algebraic::{AlgebraicModes, Entry};
+use super::conserved::{axes, conserved_energy};
 use super::forces::{
     Angles, InPhases, Phase, around, harmonic, is_internal, is_wave, leading_rates, near, phases,
 };
@@ -252,7 +253,7 @@ impl System {
         // Without a number nothing is enclosed.
         let symbol = unit.clone().filter(|unit| unit.square.is_none());
         let enclosed = || symbol.as_ref().map_or(Ok(()), |unit| Err(unit.unset()));
-        let (mut modes, algebraic) = match spectrum(mass, stiffness) {
+        let (mut modes, mut algebraic) = match spectrum(mass, stiffness) {
             Err(ResonanceError::NoRationalForm) => {
                 enclosed()?;
                 let found = AlgebraicModes::of(mass, stiffness)?;
@@ -268,7 +269,23 @@ impl System {
             (other, _) => other,
         })?;
         let squares = modes.squares.clone();
-        let mut equations = separated(&prepared.equations, &modes, algebraic.as_ref(), names)?;
+        let of = |modes: &_| separated(&prepared.equations, modes, algebraic.as_ref(), names);
+        let mut equations = of(&modes)?;
+        // Of equal frequencies the modes are whichever have the energy in the squares of their velocities.
+        let equal = squares.iter().enumerate().any(|(j, square)| squares[..j].contains(square));
+        if equal
+            && prepared.forces.is_empty()
+            && let Some(axes) = axes(&equations)
+            && let Some(other) = modes.with_axes(&axes)
+        {
+            modes = other;
+            equations = of(&modes)?;
+        }
+        if let Some(known) = &mut algebraic
+            && prepared.forces.is_empty()
+        {
+            known.energy = energy(&prepared.equations, &modes, known, names)?;
+        }
         if let Some(unit) = &unit {
             let own = equations.into_iter().zip(&squares).enumerate();
             equations = own.map(|(j, (e, square))| unit.with_squares(e, j, square)).collect();
@@ -454,22 +471,12 @@ pub(super) fn separated(
         None => without,
         Some(known) => without.iter().zip(&known.stiffness).map(without_stiffness).collect(),
     };
-    // Irrational numbers have names, in the place of which their enclosures are put.
-    let factor = |q: &Rational, entry: Entry| match algebraic {
-        None => Expression::Number(q.clone()),
-        Some(_) => Expression::parameter(&entry.name()),
-    };
-    let shape = |e: &Expression| {
-        let (Some(shapes), Expression::Unknown(unknown)) = (&modes.shapes, e) else { return None };
-        let mode = |index| Expression::Unknown(Unknown { index, ..unknown.clone() });
-        let part = |(j, p): (usize, &Rational)| factor(p, Entry::Shape(unknown.index, j)) * mode(j);
-        Some(Expression::Sum(shapes[unknown.index].iter().enumerate().map(part).collect()))
-    };
-    let without: Vec<Expression> = without.iter().map(|e| e.map(&shape)).collect();
+    let named = algebraic.is_some();
+    let without: Vec<Expression> = without.iter().map(|e| in_modes(e, modes, named)).collect();
     let equation = |(j, row): (usize, &Vec<Rational>)| {
         let parts = row.iter().enumerate().zip(&without).filter(|((_, q), _)| !q.is_zero());
-        let terms =
-            parts.map(|((i, q), e)| (factor(q, Entry::Inverse(j, i)) * e.clone()).canonical());
+        let terms = parts
+            .map(|((i, q), e)| (factor(q, Entry::Inverse(j, i), named) * e.clone()).canonical());
         let terms = terms.flat_map(|e| e.terms().to_vec());
         let square = algebraic.map(|_| Entry::Square(j).name());
         let square = square.map(|name| Expression::parameter(&name) * Expression::unknown(j, 0));
@@ -477,6 +484,37 @@ pub(super) fn separated(
         Expression::Sum(first.chain(terms).collect())
     };
     Ok(modes.inverse.iter().enumerate().map(equation).collect())
+}
+
+/// A number; irrational ones have names, in the place of which their enclosures are put.
+fn factor(q: &Rational, entry: Entry, named: bool) -> Expression {
+    if named { Expression::parameter(&entry.name()) } else { Expression::Number(q.clone()) }
+}
+
+/// With P q in the place of x.
+fn in_modes(e: &Expression, modes: &Spectrum, named: bool) -> Expression {
+    let shape = |e: &Expression| {
+        let (Some(shapes), Expression::Unknown(unknown)) = (&modes.shapes, e) else { return None };
+        let mode = |index| Expression::Unknown(Unknown { index, ..unknown.clone() });
+        let part =
+            |(j, p): (usize, &Rational)| factor(p, Entry::Shape(unknown.index, j), named) * mode(j);
+        Some(Expression::Sum(shapes[unknown.index].iter().enumerate().map(part).collect()))
+    };
+    e.map(&shape)
+}
+
+/// The energy that the equations solved for the x_j'' conserve, in irrational modes: names of their numbers would hide that these
+/// depend on each other.
+fn energy(
+    equations: &[Expression],
+    modes: &Spectrum,
+    known: &AlgebraicModes,
+    names: Names<'_>,
+) -> Result<Option<Expression>, ResonanceError> {
+    let inverse = known.mass_inverse.clone();
+    let own = Spectrum { squares: Vec::new(), shapes: None, inverse };
+    let own = separated(equations, &own, None, names)?;
+    Ok(conserved_energy(&own).map(|energy| in_modes(&energy, modes, true)))
 }
 
 /// The equation without sum_j k_j x_j at order zero.

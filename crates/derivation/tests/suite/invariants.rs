@@ -25,13 +25,36 @@ fn energy_is_conserved() {
         ),
         ("x'' + x + eps*k*m*(x - y); y'' + y + eps*k*(y - x)", ["2 z1 zbar1", "2 z2 zbar2 m"]),
         ("x'' + x + eps*k/m*(x - y); y'' + y + eps*k*(y - x)", ["2 z1 zbar1 m", "2 z2 zbar2"]),
+        // Factors that are sums; terms that tie nothing, or that tie by products of velocities.
+        ("x'' + x + eps*k*(k + m)*y; y'' + y + eps*(k + m)*x", ["2 z1 zbar1", "2 z2 zbar2 k"]),
+        (
+            "x'' + x + eps*(x^2 + k*x'*y'*y); y'' + y + eps*(m*y^3 - x'^2*y)",
+            ["2 z1 zbar1", "2 z2 zbar2 k"],
+        ),
+        // Products of velocities, of equal frequencies: 2 x'^2 + 2 x' y' + 2 y'^2 as its equations are, solved for x'', and along
+        // (1, 0) and (1, -2), 2 and 6; x' y' along (1, 1) and (1, -1), 2 and -2.
+        (
+            "2*x'' + y'' + 2*x + y + eps*x^2; x'' + 2*y'' + x + 2*y + eps*y^2",
+            ["2 z1 zbar1", "6 z2 zbar2"],
+        ),
+        ("x'' + x + eps*(2*x^2 - y^2); y'' + y + eps*(2*y^2 - x^2)", ["2 z1 zbar1", "6 z2 zbar2"]),
+        ("x'' + x + eps*y^2; y'' + y + eps*x^2", ["2 z1 zbar1", "-2 z2 zbar2"]),
     ];
     for (equations, energy) in others {
         let found = flow(equations, 2, &[]);
         assert_eq!(named(&found, &found.energy[0]), by_hand(&energy), "{equations}");
     }
+    // Weights that are sums of parameters, and products of velocities with parameters.
+    let sums = flow("x'' + x + eps*(k + m)*y; y'' + y + eps*k*x", 2, &[]);
+    let known = by_hand(&["2 z1 zbar1 k", "2 z2 zbar2 k", "2 z2 zbar2 m"]);
+    assert_eq!(named(&sums, &sums.energy[0]), known);
+    let equations = "x'' + x + eps*((1 + 2*al^2)*x^2 - al*y^2); y'' + y + eps*(y^2 - al*x^2)";
+    let products = flow(equations, 2, &[]);
+    let known = ["2 z1 zbar1", "2 z1 zbar2 al", "2 zbar1 z2 al", "2 z2 zbar2", "4 z2 zbar2 al^2"];
+    assert_eq!(named(&products, &products.energy[0]), by_hand(&known));
     for equations in [
         "x'' + x + eps*x^2*x'",
+        "2*x'' + y'' + 2*x + y + eps*(x^2 + y'); x'' + 2*y'' + x + 2*y + eps*(y^2 + x')",
         "x'' + x + eps*(x*y + y^2); y'' + 4*y - eps*x^2",
         "x'' + x + eps*(x^3 + y - 2*y'); y'' + y + eps*(x - 2*x')",
         "x'' + x + eps*x*x'^2; y'' + y",
@@ -52,6 +75,9 @@ fn energy_is_conserved() {
             assert!(gap <= enclosed.enclosed.unwrap().radius, "{gap:e}");
         }
     }
+    // Modes with irrational shapes: of V = eps x^2 y <V> = 0, and the squares of the golden ratio and its inverse as frequencies.
+    let golden = flow("x'' + 2*x - y + 2*eps*x*y; y'' + y - x + eps*x^2", 2, &[]);
+    assert_eq!((golden.energy.len(), golden.energy[0].len(), golden.energy[1].len()), (3, 2, 0));
     // Modes of coupled masses, and enclosed ones.
     assert_eq!(flow("2*x'' + 5*x - 3*y + eps*x^3; 2*y'' + 5*y - 3*x", 2, &[]).energy.len(), 3);
     assert_eq!(flow("x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x", 2, &[]).energy.len(), 3);

@@ -340,10 +340,9 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         let algebra = self.algebra;
         let own = |f| {
             let (mut parts, rest) = algebra.linear_parts(f)?;
-            let own = parts.get_mut(j).map(|[own, _]| std::mem::replace(own, algebra.zero()));
+            let own = std::mem::replace(&mut parts.get_mut(j)?[0], algebra.zero());
             let others = parts.iter().flatten().chain([&rest]).all(|f| algebra.is_zero(f));
-            let own = algebra.as_constant(&own.unwrap_or_else(|| algebra.zero()))?;
-            others.then_some(own)
+            others.then(|| algebra.as_constant(&own)).flatten()
         };
         let own = f.coefficients.iter().map(own).collect::<Option<_>>()?;
         Some(Series::truncated(own))
@@ -446,7 +445,7 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         let mut sum = Series::truncated(parts.iter().map(|(_, rest)| rest.clone()).collect());
         for (j, factor) in factors.iter().enumerate() {
             let own = |(parts, _): &LinearParts<A::Element>| Some(parts.get(j)?[0].clone());
-            let Some(own) = parts.iter().map(own).collect::<Option<_>>() else { continue };
+            let own = parts.iter().map(own).collect::<Option<_>>()?;
             let product = Series::truncated(own).mul(algebra, factor, self.order);
             let z = algebra.amplitude(j);
             let real = |c: &_| algebra.twice_real(&algebra.mul(c, &z));

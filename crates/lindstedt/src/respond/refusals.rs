@@ -71,10 +71,17 @@ pub(super) fn no_bound() -> Error {
 
 /// Of motions that are not isolated: nothing that is conserved by the equations tells those of a family apart.
 pub(super) fn no_energy() -> Error {
-    let message = "the lowest order of the slow flow keeps a quadratic form, so that its motions form families, and no energy is \
+    let message = "the slow flow of this order keeps a quadratic form, so that its motions form families, and no energy is \
                    known that all orders conserve";
     let hint = "`lindstedt derive` has the slow flow, `lindstedt simulate` motions";
     Refused::no_answer("no-response", message, hint).into()
+}
+
+/// Of a conserved energy with products of velocities whose factors are parameters: the modes that are free of them would depend
+/// on these.
+pub(super) fn no_squares() -> Error {
+    let message = "an energy is conserved, with products of velocities whose factors are parameters without a value";
+    Refused::no_answer("no-response", message, "--set values of these parameters").into()
 }
 
 pub(super) fn uncoupled(slow: &SlowFlow, order: usize) -> Error {

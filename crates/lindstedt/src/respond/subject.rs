@@ -4,13 +4,15 @@ use super::answer::{Estimate, Response};
 use super::frequency::{Varying, forcing_frequency, moving_frequency, resonant};
 use super::refusals::{
     has_numbers, is_unit, is_unset, no_amplitude, no_bound, no_energy, no_frame, no_part,
-    no_polynomial, no_resonance, not_weak, not_whole, refuse_zero, strong_force, uncoupled, whole,
+    no_polynomial, no_resonance, no_squares, not_weak, not_whole, refuse_zero, strong_force,
+    uncoupled, whole,
 };
 use super::{ORDER, Respond, SEARCHES, STEPS, not_determined};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
 use crate::refusal::Refused;
 use crate::{Error, Exact, Oscillator, Remark, SlowFlow, Work};
+use lindstedt_derivation::resonance::QuadraticInvariant;
 use lindstedt_equation::Expression;
 use lindstedt_evaluation::rotating::{FAMILY, Rotating, forced_part, rotating};
 use lindstedt_evaluation::tongue::Tongues;
@@ -90,6 +92,9 @@ fn coupled(slow: &SlowFlow, small: &str, order: usize, varies: bool) -> Result<R
     }
     if found.fixed == 0 && found.unforced().is_none() {
         return Err(uncoupled(slow, order));
+    }
+    if found.unforced().is_some_and(|free| free.energy.is_none()) && !slow.energy.is_empty() {
+        return Err(no_squares());
     }
     Ok(found)
 }
@@ -400,8 +405,10 @@ impl<'a> Subject<'a> {
             let less = states.map(|states| ROOM * self.falling(at, states, most));
             return Ok((ROOM * most, less.filter(|less| *less < ROOM * most)));
         }
-        let kept =
-            self.rotating.unforced().is_some() && !self.slow.quadratic_invariants().is_empty();
+        // A form that the lowest orders alone keep makes no families.
+        let whole = |form: &QuadraticInvariant| form.orders >= self.order;
+        let kept = self.rotating.unforced().is_some()
+            && self.slow.quadratic_invariants().iter().any(whole);
         Err(if kept { no_energy() } else { no_bound() })
     }
 
