@@ -161,7 +161,8 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
 }
 
 fn respond(case: &Oscillator, options: &Options) -> Result<Respond, Error> {
-    let (sweep, second) = options.axes(|axis| Respond::read_sweep(case, axis))?;
+    let (sweep, second) =
+        options.axes(|axis| Respond::read_sweep(case, axis, &lindstedt::Stop::default()))?;
     let question = Respond {
         order: options.parsed("order")?,
         sweep,

@@ -1,6 +1,7 @@
 //! Stopping within an order: after every number of questions the result is a prefix of the whole
 //! one, and the questions within one order are many. Counted, not timed.
 
+use lindstedt::grid::Axis;
 use lindstedt::unstable::algebra::Stop;
 use lindstedt::unstable::derivation::averaging::{Averaging, AveragingSettings, average};
 use lindstedt::unstable::derivation::numeric::{Tier, derive as derive_numbers};
@@ -254,6 +255,18 @@ fn resummations() {
         let again = resum(&source, method, 200, &stop).unwrap();
         assert_eq!(again.outcome.estimate.value, whole.outcome.estimate.value);
     }
+}
+
+/// A million exact values of a sweep.
+#[test]
+fn values_of_a_sweep() {
+    let text = "sigma=-1..3:1000000";
+    let (stop, asked) = after(5);
+    let broken = Axis::parse_until(text, &stop);
+    assert!(interrupted(&broken) && asked.load(Ordering::SeqCst) == 6);
+    let (stop, asked) = after(u64::MAX);
+    let whole = Axis::parse_until(text, &stop).unwrap();
+    assert!(asked.load(Ordering::SeqCst) > 500 && whole.values.len() == 1_000_000);
 }
 
 /// Whole evaluations: most of their questions are those of the resummation.

@@ -51,6 +51,13 @@ fn odd_laws_have_their_exact_rates() {
     }
 }
 
+/// Intervals end where the amplitudes asked for end, though the search goes on by a cell.
+#[test]
+fn nothing_is_said_beyond_the_amplitudes_asked_for() {
+    let steady = first_order("x'' + x + eps*x^3 = 0", "2").steady;
+    assert!(matches!(steady[..], [[from, 2.0]] if from < 0.01), "{steady:?}");
+}
+
 /// Forces of x alone, however large, hide neither the cycle of van der Pol's law nor its errors; the rate of the phase is that
 /// where the amplitude may be: 5/16 10^6 a^4.
 #[test]

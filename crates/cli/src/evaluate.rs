@@ -103,7 +103,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     if options.prove && options.sweep.is_empty() {
         return session.show(oscillator.prove(&question, &work), &options.plot);
     }
-    let axes = options.sweep.iter().map(|text| oscillator.axis(text));
+    let axes = options.sweep.iter().map(|text| oscillator.axis_until(text, &work.stop));
     if let (Some(columns), rows) = Axis::pair(axes)? {
         if options.prove {
             if rows.is_some() {
@@ -150,7 +150,7 @@ fn averaged(
     let start = start.map_err(Error::from)?;
     let order = options.order.map(|order| order as usize);
     let question = AveragedMotion { order, start, times };
-    let axes = options.sweep.iter().map(|text| oscillator.axis(text));
+    let axes = options.sweep.iter().map(|text| oscillator.axis_until(text, &work.stop));
     if let (Some(columns), rows) = Axis::pair(axes)? {
         return session
             .show(oscillator.averaged_sweep(&question, columns, rows, work), &options.plot);

@@ -38,7 +38,10 @@ pub struct RespondOptions {
 
 pub fn run(options: &RespondOptions, session: &Session<'_>) -> Outcome {
     let oscillator = session.oscillator(&options.problem, &options.set, None)?;
-    let axes = options.sweep.iter().map(|text| Respond::read_sweep(&oscillator, text));
+    let axes = options
+        .sweep
+        .iter()
+        .map(|text| Respond::read_sweep(&oscillator, text, &session.work().stop));
     let (sweep, second) = Axis::pair(axes)?;
     let amplitude = options.amplitude.as_deref().map(Exact::parse);
     let question = Respond {

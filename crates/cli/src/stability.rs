@@ -50,7 +50,11 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
         predict: options.predictor.0,
         exact: options.predictor.1,
         branch,
-        sweep: options.sweep.iter().map(|text| oscillator.axis(text)).collect::<Result<_, _>>()?,
+        sweep: options
+            .sweep
+            .iter()
+            .map(|text| oscillator.axis_until(text, &session.work().stop))
+            .collect::<Result<_, _>>()?,
         radius: false,
         part: None,
     };

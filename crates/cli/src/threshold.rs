@@ -61,7 +61,11 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
         return Err(Failure::usage("order", message, "for example --unknown mu --order 4"));
     }
     let question = Threshold {
-        sweep: options.sweep.iter().map(|text| oscillator.axis(text)).collect::<Result<_, _>>()?,
+        sweep: options
+            .sweep
+            .iter()
+            .map(|text| oscillator.axis_until(text, &session.work().stop))
+            .collect::<Result<_, _>>()?,
         zeros: options.zeros.as_deref().map(Axis::ends).transpose()?,
         subharmonics: options.subharmonics,
         second_order: options.second_order,

@@ -149,6 +149,8 @@ pub enum DerivationError {
         reason: Box<Reason>,
         /// The small parameter.
         small: String,
+        /// Whether the law depends on t, or on values at earlier times.
+        late_or_forced: bool,
     },
     /// The value does not exist.
     #[error("the value does not exist")]

@@ -1,7 +1,7 @@
 //! One form for trees that addition and multiplication make equal, and the tree algebra that
 //! loading a problem needs: substitution, searching, x'' set free.
 
-use crate::Expression;
+use crate::{Expression, Function};
 use rug::Rational;
 use rug::ops::Pow;
 use std::cmp::Ordering;
@@ -20,14 +20,18 @@ pub enum AccelerationFault {
 
 impl Expression {
     /// The same expression with sums in sums and products in products flat, the numbers of a
-    /// sum and of a product collected into one (in front of a product), ones and zeros left out.
-    /// Idempotent. Nothing is expanded or reordered; the cost is linear in the size of the tree.
+    /// sum and of a product collected into one (in front of a product), ones and zeros left out; what the small parameter
+    /// is divided by cancels, and functions of 0 that are rational are numbers. Idempotent. Nothing is expanded or reordered; the cost is linear in the size of the tree.
     ///
     /// ```
-    /// use lindstedt_equation::Expression;
+    /// use lindstedt_equation::{Expression, Function};
     /// let x = || Expression::DISPLACEMENT;
     /// let e = Expression::Product(vec![x(), Expression::integer(2) * Expression::integer(3)]);
     /// assert_eq!(e.canonical(), 6 * x());
+    /// let constant = (0 * Expression::Time).apply(Function::Cos);
+    /// assert_eq!(constant.canonical(), Expression::integer(1));
+    /// let once = Expression::Small.pow(2) * x() * Expression::Small.pow(-1);
+    /// assert_eq!(once.canonical(), Expression::Small * x());
     /// ```
     #[must_use]
     pub fn canonical(&self) -> Self {
@@ -35,6 +39,7 @@ impl Expression {
             Self::Sum(terms) => canonical_sum(terms),
             Self::Product(factors) => canonical_product(factors),
             Self::Power(base, exponent) => canonical_power(*base, *exponent),
+            Self::Function(function, argument) => canonical_function(function, *argument),
             other => other,
         }
     }
@@ -235,10 +240,51 @@ fn canonical_product(factors: Vec<Expression>) -> Expression {
     if number.is_zero() || list.is_empty() {
         return Expression::Number(number);
     }
+    cancel_small(&mut list);
+    if list.is_empty() {
+        return Expression::Number(number);
+    }
     if number != 1 {
         list.insert(0, Expression::Number(number));
     }
     if list.len() == 1 { list.remove(0) } else { Expression::Product(list) }
+}
+
+/// The exponent of the small parameter where a factor is a whole power of it.
+fn small_power(factor: &Expression) -> Option<i32> {
+    match factor {
+        Expression::Small => Some(1),
+        Expression::Power(base, n) if **base == Expression::Small => {
+            n.as_number().filter(Rational::is_integer)?.numer().to_i32()
+        }
+        _ => None,
+    }
+}
+
+/// eps^a eps^-b as one power, in the place of the first: eps/eps has no pole at eps = 0. Without a division nothing changes.
+fn cancel_small(list: &mut Vec<Expression>) {
+    let powers: Vec<i32> = list.iter().filter_map(small_power).collect();
+    if powers.len() < 2 || powers.iter().all(|n| *n > 0) {
+        return;
+    }
+    let Some(sum) = powers.iter().try_fold(0i32, |sum, n| sum.checked_add(*n)) else { return };
+    let first = list.iter().position(|factor| small_power(factor).is_some()).unwrap_or_default();
+    list.retain(|factor| small_power(factor).is_none());
+    match sum {
+        0 => {}
+        1 => list.insert(first, Expression::Small),
+        n => list.insert(first, Expression::Small.pow(i64::from(n))),
+    }
+}
+
+/// sin 0 = 0, cos 0 = exp 0 = 1: a force of the frequency zero is a constant.
+fn canonical_function(function: Function, argument: Expression) -> Expression {
+    let zero = matches!(&argument, Expression::Number(q) if q.is_zero());
+    match function {
+        Function::Sin if zero => Expression::integer(0),
+        Function::Cos | Function::Exp if zero => Expression::integer(1),
+        _ => argument.apply(function),
+    }
 }
 
 fn canonical_power(base: Expression, exponent: Expression) -> Expression {

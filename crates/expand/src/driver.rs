@@ -364,6 +364,9 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         if equation.has_velocity() && stiffness != constants.one() {
             return Err(ExpandError::StiffnessNotOne);
         }
+        if constants.is_zero(&stiffness) {
+            return Err(ExpandError::NoStiffness);
+        }
         let inverse_stiffness =
             constants.reciprocal(&stiffness).ok_or(ExpandError::SingularStiffness)?;
         let mut driver = Self {

@@ -68,8 +68,11 @@ pub enum ExpandError {
     )]
     NotWeaklyNonlinear,
     /// The factor of x at order zero cannot be divided by.
-    #[error("the linear stiffness vanishes or cannot be inverted")]
+    #[error("the linear stiffness cannot be inverted among the coefficients")]
     SingularStiffness,
+    /// x'' alone is no oscillator.
+    #[error("the linear stiffness is zero: without the small terms nothing oscillates")]
+    NoStiffness,
     /// x'' - k x is no oscillator.
     #[error("the linear stiffness is negative: no oscillation about x = 0")]
     NegativeStiffness,

@@ -42,7 +42,7 @@ type Polynomial = BTreeMap<(usize, usize), Rational>;
 /// # Errors
 /// [`ExpandError::UnsupportedTerm`] where the force is no polynomial of x and eps,
 /// [`ExpandError::NotWeaklyNonlinear`] where it is not kappa x at eps = 0,
-/// [`ExpandError::SingularStiffness`] where kappa = 0, [`ExpandError::Interrupted`] when stopped.
+/// [`ExpandError::NoStiffness`] where kappa = 0, [`ExpandError::Interrupted`] when stopped.
 ///
 /// ```
 /// use lindstedt_algebra::{Rationals, Stop};
@@ -79,7 +79,7 @@ where
         return Err(ExpandError::NotWeaklyNonlinear);
     }
     if stiffness.is_zero() {
-        return Err(ExpandError::SingularStiffness);
+        return Err(ExpandError::NoStiffness);
     }
     let factors = Factors::new(&force, &stiffness);
     let period = factors.constant_terms(order, stop)?;

@@ -4,6 +4,7 @@
 use crate::grid::Axis;
 use crate::refusal::{Refusal as _, Refused};
 use crate::{Error, Exact, Oscillator};
+use lindstedt_algebra::Stop;
 use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
 use lindstedt_problem_file::canonical_name;
@@ -46,11 +47,19 @@ impl Oscillator {
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
     pub fn axis(&self, text: &str) -> Result<Axis, Error> {
+        self.axis_until(text, &Stop::default())
+    }
+
+    /// As [`Oscillator::axis`], broken off by `stop`.
+    ///
+    /// # Errors
+    /// Those of [`Oscillator::axis`] and [`Axis::parse_until`].
+    pub fn axis_until(&self, text: &str, stop: &Stop) -> Result<Axis, Error> {
         let (file, text) = (self.problem_file(), text.trim());
         self.check_varied(text.split('=').next().unwrap_or_default())?;
         match file.ranges.get(text) {
-            Some(range) => Axis::parse(&format!("{text}={range}")),
-            None => Axis::parse(text),
+            Some(range) => Axis::parse_until(&format!("{text}={range}"), stop),
+            None => Axis::parse_until(text, stop),
         }
     }
 

@@ -2,9 +2,10 @@
 
 use crate::refusal::Refused;
 use crate::{Error, Exact, Oscillator, Progress, Standing, Work};
+use lindstedt_algebra::Stop;
 use lindstedt_problem_file::canonical_name;
 use rayon::prelude::*;
-use rug::Rational;
+use rug::{Integer, Rational};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
@@ -80,6 +81,14 @@ impl Axis {
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, Error> {
+        Self::parse_until(text, &Stop::default())
+    }
+
+    /// As [`Axis::parse`]; a million exact values take a good part of a second, which `stop` breaks off.
+    ///
+    /// # Errors
+    /// As [`Axis::parse`], and [`Kind::Stopped`](crate::Kind::Stopped).
+    pub fn parse_until(text: &str, stop: &Stop) -> Result<Self, Error> {
         let usage = |message: String| {
             Error::from(Refused::usage("sweep", message, "NAME=LO..HI:COUNT, as in omega=0..1:11"))
         };
@@ -96,8 +105,13 @@ impl Axis {
                 let count = number.filter(|n| (1..=MOST_VALUES).contains(n)).ok_or_else(|| {
                     usage(format!("a range has 1 to {MOST_VALUES} values, not {count}"))
                 })?;
-                steps(&Exact::parse(low)?, &Exact::parse(high)?, count)
-                    .ok_or_else(|| usage(format!("{text:?} mixes numbers and multiples of pi")))?
+                let (low, high) = (Exact::parse(low)?, Exact::parse(high)?);
+                let value = steps(&low, &high, count)
+                    .ok_or_else(|| usage(format!("{text:?} mixes numbers and multiples of pi")))?;
+                let value = |i| (i % BLOCK != 0 || !stop.asked()).then(|| value(i));
+                let all: Option<Vec<Exact>> = (0..count).map(value).collect();
+                let message = "stopped before the values of the sweep were there";
+                all.ok_or_else(|| Refused::stopped(message, ""))?
             }
         };
         Ok(Self { name, values })
@@ -156,9 +170,13 @@ pub(crate) fn check_room(points: usize, bytes: usize, work: &Work) -> Result<(),
     Err(Refused::undecided("too-large", message, hint).into())
 }
 
-/// `count` values from `low` to `high` in equal steps; nothing where only one end is a multiple of
+/// The value of every number below `count`, from `low` to `high` in equal steps; nothing where only one end is a multiple of
 /// pi other than zero.
-fn steps(low: &Exact, high: &Exact, count: usize) -> Option<Vec<Exact>> {
+fn steps<'a>(
+    low: &'a Exact,
+    high: &'a Exact,
+    count: usize,
+) -> Option<impl Fn(usize) -> Exact + 'a> {
     let (a, b, in_pi) = match (low, high) {
         (Exact::Rational(a), Exact::Rational(b)) => (a, b, false),
         (Exact::PiTimes(a), Exact::PiTimes(b)) => (a, b, true),
@@ -167,11 +185,11 @@ fn steps(low: &Exact, high: &Exact, count: usize) -> Option<Vec<Exact>> {
         _ => return None,
     };
     let last = count.saturating_sub(1).max(1);
-    let value = |i: usize| {
-        let q = Rational::from(b - a) * Rational::from((i, last)) + a;
+    let step = Rational::from(b - a) / Integer::from(last);
+    Some(move |i: usize| {
+        let q = Rational::from(&step * Integer::from(i)) + a;
         if in_pi { Exact::PiTimes(q) } else { Exact::Rational(q) }
-    };
-    Some((0..count).map(value).collect())
+    })
 }
 
 /// What was computed at every point of one or two axes; row by row, the first axis along the columns.

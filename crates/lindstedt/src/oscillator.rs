@@ -208,7 +208,28 @@ impl Oscillator {
             return Err(Refused::usage("set", message, "").into());
         }
         let value = Exact::parse(value)?;
-        Ok(self.with(name, value))
+        let set = self.with(name, value);
+        let Some(term) = set.division_by_zero() else { return Ok(set) };
+        let term = term.print(&set.problem.small, Style::Text);
+        let message = format!("{term} divides by zero at the values set");
+        Err(Refused::no_answer("no-value", message, "another value of the parameter").into())
+    }
+
+    /// A power in the equations that divides by zero at the values that are set.
+    fn division_by_zero(&self) -> Option<&Expression> {
+        let value = |e: &Expression| match e {
+            Expression::Parameter(name) => {
+                Some(Expression::Number(self.values.get(name)?.as_rational()?.clone()))
+            }
+            _ => None,
+        };
+        let divides = |e: &&Expression| {
+            let Expression::Power(base, exponent) = e else { return false };
+            let number = |e: &Expression| e.substitute(&value).as_number();
+            number(exponent).is_some_and(|n| n < 0) && number(base).is_some_and(|q| q.is_zero())
+        };
+        let Problem { equation, others, .. } = &self.problem;
+        std::iter::once(equation).chain(others).flat_map(Expression::nodes).find(divides)
     }
 
     /// The same oscillator with an exact value for a parameter; pi stays what it is.

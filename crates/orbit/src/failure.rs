@@ -1,6 +1,7 @@
 //! Why an orbit is not proved.
 
 use lindstedt_equation::{AccelerationFault, Expression};
+use rug::Rational;
 use thiserror::Error;
 
 /// Why an orbit is not proved: the question does not fit the equation, or a bound failed, with its
@@ -30,14 +31,43 @@ pub enum Failure {
         /// The norm.
         argument: f64,
     },
-    /// The degree or the highest harmonic of the force are beyond what is taken.
-    #[error("degree {degree}, harmonic {harmonic} of the force: too large")]
-    TooLarge {
+    /// A power that is not taken.
+    #[error(
+        "the exponent {exponent} is too large for a proof: it takes powers up to {most} and roots up to the {root}th"
+    )]
+    Exponent {
+        /// The exponent.
+        exponent: Rational,
+        /// The largest power.
+        most: u32,
+        /// The largest denominator.
+        root: u32,
+    },
+    /// A degree that is not taken.
+    #[error(
+        "a term of degree {degree} in x and x' is too large for a proof: it takes degrees up to {most}"
+    )]
+    Degree {
         /// The degree.
         degree: u32,
+        /// The largest degree.
+        most: u32,
+    },
+    /// A harmonic of the force that is not taken.
+    #[error(
+        "the frequencies of the force are up to {harmonic} times their common measure: a proof takes multiples up to {most}"
+    )]
+    Harmonic {
         /// The harmonic.
         harmonic: u32,
+        /// The largest harmonic.
+        most: u32,
     },
+    /// Multiplied out, the equation or a derivative has more terms, or it has more functions, than are taken.
+    #[error(
+        "multiplied out, the equation or its derivatives have too many terms or functions for a proof"
+    )]
+    TooManyTerms,
     /// The field has a force: [`Kind::Forced`](crate::Kind::Forced) is the question.
     #[error("the equation is forced")]
     Forced,

@@ -11,7 +11,8 @@ use crate::operation::Operation;
 use crate::polynomial::{Polynomial, Term};
 use crate::space::Signs;
 use crate::upward::Up;
-use rug::{Complete, Integer, Rational};
+use lindstedt_number::common_measure;
+use rug::Rational;
 
 /// A function of a polynomial in the variables before it.
 #[derive(Clone, Debug)]
@@ -194,10 +195,3 @@ impl Field {
 
 /// Unknowns up to which all patterns of signs are tried.
 const MOST_SIGNS: usize = 8;
-
-/// The largest q of which a and b are integer multiples: gcd of numerators over lcm of
-/// denominators.
-pub(crate) fn common_measure(a: &Rational, b: &Rational) -> Rational {
-    let numerator = Integer::from(a.numer() * b.denom()).gcd(&Integer::from(b.numer() * a.denom()));
-    Rational::from((numerator, (a.denom() * b.denom()).complete()))
-}

@@ -2,7 +2,7 @@
 //! gathered.
 
 use crate::Failure;
-use crate::field::{Field, Function as Named, Varying, common_measure};
+use crate::field::{Field, Function as Named, Varying};
 use crate::operation::Operation;
 use crate::polynomial::{Polynomial, Spread, Term};
 use crate::reader::Reader;
@@ -10,6 +10,7 @@ use crate::sum::{By, Key, Sum};
 use crate::upward::Up;
 use lindstedt_equation::{AccelerationFault, Expression, Problem};
 use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::common_measure;
 use rug::ops::Pow;
 use rug::{Complete, Rational};
 use std::collections::BTreeMap;
@@ -24,7 +25,7 @@ impl Field {
     ///
     /// # Errors
     /// [`Failure::Acceleration`], [`Failure::NoValue`], [`Failure::NotPolynomial`],
-    /// [`Failure::NotSmooth`], [`Failure::TooLarge`].
+    /// [`Failure::NotSmooth`], and those of what is too large.
     ///
     /// ```
     /// use lindstedt_equation::Expression;
@@ -272,7 +273,7 @@ struct Collector<'a> {
 impl Collector<'_> {
     fn field(self, forces: &[Sum], functions: &[(Operation, Sum)]) -> Result<Field, Failure> {
         let n = forces.len();
-        let too_large = || Failure::TooLarge { degree: MOST_DEGREE, harmonic: 0 };
+        let too_large = || Failure::TooManyTerms;
         let by =
             |sum: &Sum, v: usize| sum.by(By::Variable(v), 2 * n, functions).ok_or_else(too_large);
         let varying = self.varying(forces, functions)?;
@@ -304,8 +305,11 @@ impl Collector<'_> {
         let terms = field.forces.iter().flat_map(|g| &g.terms);
         let harmonic = terms.filter_map(|t| t.factor.keys().max()).max().copied().unwrap_or(0);
         let degree = field.degree();
-        if degree > MOST_DEGREE || harmonic > MOST_HARMONIC {
-            return Err(Failure::TooLarge { degree, harmonic });
+        if degree > MOST_DEGREE {
+            return Err(Failure::Degree { degree, most: MOST_DEGREE });
+        }
+        if harmonic > MOST_HARMONIC {
+            return Err(Failure::Harmonic { harmonic, most: MOST_HARMONIC });
         }
         Ok(field)
     }
@@ -321,7 +325,7 @@ impl Collector<'_> {
             return Ok(None);
         };
         let (n, half) = (forces.len(), Rational::from_f64(half.0).unwrap_or_default());
-        let too_large = || Failure::TooLarge { degree: MOST_DEGREE, harmonic: 0 };
+        let too_large = || Failure::TooManyTerms;
         let by = |sum: &Sum, by: By<'_>| sum.by(by, 2 * n, functions).ok_or_else(too_large);
         let along = |sum: &Sum| Ok(by(sum, By::Parameter(name))?.scaled(&half));
         let slopes = forces.iter().map(along).collect::<Result<Vec<_>, Failure>>()?;

@@ -33,7 +33,8 @@ impl Reader {
     pub(crate) fn rest(&mut self, e: &Expression, accelerations: &[i64]) -> Result<Sum, Failure> {
         self.accelerations = accelerations.to_vec();
         let sum = e.evaluate(self);
-        let refused = self.refusal.take().unwrap_or_else(|| Failure::NotPolynomial(e.clone()));
+        // Without a reason of its own, a product was too long.
+        let refused = self.refusal.take().unwrap_or(Failure::TooManyTerms);
         let sum = sum.ok_or(refused)?;
         match sum.0.keys().any(|key| key.time > 0) {
             true => Err(Failure::NotPolynomial(Expression::Time)),
@@ -44,6 +45,11 @@ impl Reader {
     fn refuse<T>(&mut self, failure: Failure) -> Option<T> {
         self.refusal.get_or_insert(failure);
         None
+    }
+
+    fn too_high<T>(&mut self, exponent: &Rational) -> Option<T> {
+        let exponent = exponent.clone();
+        self.refuse(Failure::Exponent { exponent, most: MOST_POWER, root: MOST_ROOT })
     }
 
     /// A function as a variable.
@@ -91,10 +97,11 @@ impl Reader {
 
     /// base^(p/q) for a base that is no number: a power of base^(-1/q) and of the base.
     fn fraction(&mut self, base: Sum, exponent: &Rational, whole: &Expression) -> Option<Sum> {
-        let (p, q) = (exponent.numer().to_i32()?, exponent.denom().to_u32()?);
-        if p.unsigned_abs() > MOST_POWER || q > MOST_ROOT {
-            return None;
-        }
+        let parts = (exponent.numer().to_i32(), exponent.denom().to_u32());
+        let taken = |(p, q): &(i32, u32)| p.unsigned_abs() <= MOST_POWER && *q <= MOST_ROOT;
+        let Some((p, q)) = parts.0.zip(parts.1).filter(taken) else {
+            return self.too_high(exponent);
+        };
         let vanishes = base.0.keys().all(|key| key.powers.iter().any(|n| *n > 0));
         if q > 1 && vanishes {
             return self.refuse(Failure::NotSmooth(whole.clone()));
@@ -158,11 +165,17 @@ impl Operations for Reader {
         let base = base.evaluate(self)?;
         let integer = n.is_integer().then(|| n.numer().to_i32()).flatten();
         match integer {
-            Some(n) if n >= 0 => return base.power(n.unsigned_abs().min(MOST_POWER + 1)),
+            Some(n)
+                if n.unsigned_abs() < 1000
+                    && base.as_number().is_some_and(|q| n > 0 || !q.is_zero()) =>
+            {
+                return base.as_number().map(|q| Sum::number(q.pow(n)));
+            }
+            Some(n) if (0..=MOST_POWER.cast_signed()).contains(&n) => {
+                return base.power(n.unsigned_abs());
+            }
+            Some(n) if n >= 0 || n <= -1000 => return self.too_high(&n.into()),
             Some(n) => {
-                if let Some(q) = base.as_number().filter(|q| !q.is_zero()) {
-                    return (n > -1000).then(|| Sum::number(q.pow(n)));
-                }
                 // A product of parameters and a number can be divided by.
                 if let [(key, waves)] = &base.0.iter().collect::<Vec<_>>()[..]
                     && key.powers.is_empty()

@@ -79,7 +79,7 @@ impl fmt::Display for Why {
             Self::Forced => "depends on t; averaging over one phase takes no force",
             Self::Late => "is a delay; `lindstedt derive --normalisation free` averages delays in polynomial laws",
             Self::NotSpring => "has no factor of the small parameter; only a linear spring may have none",
-            Self::SmallInside => "has the small parameter inside a function",
+            Self::SmallInside => "has the small parameter in a function, a divisor or a power that is no whole one",
             Self::Delay => "is a delay; Melnikov's method has none",
             Self::Formal => "is a formal function",
             Self::DependsOnPosition => "depends on x and is no g(x)*x'^j with a power, or sines and cosines of k*x, for g",

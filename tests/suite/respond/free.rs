@@ -4,7 +4,7 @@ use super::{ask, decimals, to_order};
 use lindstedt::grid::Axis;
 use lindstedt::respond::State;
 use lindstedt::verify::Verdict;
-use lindstedt::{Oscillator, Refusal, Respond, Status, Verify, Work};
+use lindstedt::{Oscillator, Refusal, Respond, Status, Stop, Verify, Work};
 use rug::Rational;
 
 /// Motions that lock and normal modes against periodic orbits of the equations: amplitudes to O(eps^N), frequencies to one order more.
@@ -214,7 +214,9 @@ fn motions_are_born_of_rest() {
 fn a_pitchfork_of_modes_is_no_fold() {
     let springs = "x'' + x + eps*(x^3 + k*(x - y)); y'' + y + eps*(k*(y - x) + y^3)";
     let without_folds = |sweep: &str, order: usize| {
-        let sweep = Respond::read_sweep(&Oscillator::parse(springs).unwrap(), sweep).unwrap();
+        let sweep =
+            Respond::read_sweep(&Oscillator::parse(springs).unwrap(), sweep, &Stop::default())
+                .unwrap();
         let question = Respond { sweep: Some(sweep), ..to_order(order) };
         let found = ask(springs, &[("eps", "1/10"), ("amplitude", "1")], &question);
         assert!(found.folds.is_empty(), "{order}: {:?}", found.folds);

@@ -27,6 +27,20 @@ fn parametric_states() {
     assert_eq!(stable, [true, true, false, false, true].map(Some));
 }
 
+/// A damped oscillator at its resonance: w a = 1 and phi = -pi/2 whatever the size of w.
+#[test]
+fn frequencies_of_any_size() {
+    for w in ["1e9", "1e10", "1e40", "1e-4"] {
+        let equation = format!("x'' + ({w})^2*x + eps*x' = eps*cos({w}*t)");
+        let found = ask(&equation, &[("eps", "1/10")], &to_order(1));
+        let [state] = &found.states[0].list[..] else { panic!("{w}: one state") };
+        let phase = state.phases[0].as_ref().unwrap();
+        let [a, phi, w] = [&state.amplitudes[0].decimal, &phase.decimal, w]
+            .map(|decimal| decimal.parse::<f64>().unwrap());
+        assert!((a * w - 1.0).abs() < 1e-9 && (phi + 0.5 * std::f64::consts::PI).abs() < 1e-9);
+    }
+}
+
 /// Three states that are each other turned by a third of a turn lie within the largest amplitude together or not at all.
 #[test]
 fn the_largest_amplitude_is_that_of_a_disc() {

@@ -53,6 +53,7 @@ impl Refused {
         for (name, expected) in &self.details {
             let holds = match *name {
                 "says" => format!("{message} ({hint})").contains(expected),
+                "lacks" => !hint.contains(expected),
                 "hint" => hint.contains(expected),
                 "next" => run(expected, &[]).status.success(),
                 _ => false,

@@ -6,8 +6,10 @@ use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{PolynomialRing, Symbol};
 use lindstedt_equation::classify::rational_root;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::amplitudes::scalars::{Integers, Over, Scalars};
 use rug::Rational;
+use std::cmp::Ordering;
 
 /// What is asked of a ring of coefficients besides its operations.
 pub(super) trait Coefficients: RationalAlgebra + Clone {
@@ -17,6 +19,8 @@ pub(super) trait Coefficients: RationalAlgebra + Clone {
     fn scalars(&self) -> Self::Scalars;
     /// The positive square root, where the ring has it.
     fn square_root(&self, a: &Self::Element) -> Option<Self::Element>;
+    /// Whether a is positive, zero or negative, where that is known.
+    fn sign(&self, a: &Self::Element) -> Option<Ordering>;
     /// cos x, sin x for the angle x = rate * time.
     fn turn(&self, rate: &Self::Element, time: &Self::Element) -> Option<[Self::Element; 2]>;
 }
@@ -29,6 +33,9 @@ impl Coefficients for Rationals {
     }
     fn square_root(&self, a: &Rational) -> Option<Rational> {
         rational_root(a)
+    }
+    fn sign(&self, a: &Rational) -> Option<Ordering> {
+        Some(a.cmp0())
     }
     /// Cosine and sine of a rational number other than zero are irrational.
     fn turn(&self, rate: &Rational, time: &Rational) -> Option<[Rational; 2]> {
@@ -44,6 +51,9 @@ impl Coefficients for BallRing {
     }
     fn square_root(&self, a: &Enclosure) -> Option<Enclosure> {
         a.0.is_positive().then(|| self.balls.sqrt(&a.0).map(Enclosure)).flatten()
+    }
+    fn sign(&self, a: &Enclosure) -> Option<Ordering> {
+        sign(&a.0)
     }
     fn turn(&self, rate: &Enclosure, time: &Enclosure) -> Option<[Enclosure; 2]> {
         let angle = self.balls.mul(&rate.0, &time.0);
@@ -77,6 +87,18 @@ impl Coefficients for ParameterField {
         }
         Some(root)
     }
+    /// Of what no parameter but pi stands in.
+    fn sign(&self, a: &ParameterFraction) -> Option<Ordering> {
+        let ring = BallRing { balls: Balls::new(SIGN_BITS) };
+        let known =
+            |i: u16| self.ring.parameters.get(usize::from(i)).is_some_and(|name| name == "pi");
+        let mut open = false;
+        let value = self.evaluate(&ring, a, |i| {
+            open |= !known(i);
+            Enclosure(ring.balls.pi())
+        })?;
+        sign(&value.0).filter(|_| !open)
+    }
     /// The pair of parameters named after the angle, where there is one.
     fn turn(
         &self,
@@ -89,6 +111,17 @@ impl Coefficients for ParameterField {
         }
         let [cos, sin] = pair_names(self, &angle).map(|name| self.position(&name));
         Some([self.parameter(cos?), self.parameter(sin?)])
+    }
+}
+
+/// Bits of the enclosure that gives the sign of a polynomial in pi.
+const SIGN_BITS: u32 = 400;
+
+fn sign(ball: &Ball) -> Option<Ordering> {
+    match ball {
+        ball if ball.lower() > 0 => Some(Ordering::Greater),
+        ball if ball.upper() < 0 => Some(Ordering::Less),
+        ball => (ball.is_exact() && ball.contains_zero()).then_some(Ordering::Equal),
     }
 }
 

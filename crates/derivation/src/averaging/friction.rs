@@ -204,7 +204,10 @@ fn on_half_turn(problem: &Problem, values: &BTreeMap<String, Exact>) -> Result<E
 }
 
 fn against(problem: &Problem, reason: Reason) -> Error {
-    Error::BetweenTurningPoints { reason: Box::new(reason), small: problem.small.to_string() }
+    let in_time = |e: &Expression| matches!(e, Expression::Time) || e.is_delayed();
+    let late_or_forced = problem.equation.find(&in_time).is_some();
+    let small = problem.small.to_string();
+    Error::BetweenTurningPoints { reason: Box::new(reason), small, late_or_forced }
 }
 
 /// omega_0, a number times powers of parameters.
@@ -215,8 +218,7 @@ fn frequency(all: &Monomials, names: &[String], problem: &Problem) -> Result<Sca
     }
     let (Some((m, q)), None) = (leading.next(), leading.next()) else {
         let none = all.terms.keys().all(|m| m.order > 0);
-        let fault =
-            if none { ExpandError::SingularStiffness } else { ExpandError::StiffnessNotSquare };
+        let fault = if none { ExpandError::NoStiffness } else { ExpandError::StiffnessNotSquare };
         return Err(fault.into());
     };
     if q.is_negative() {

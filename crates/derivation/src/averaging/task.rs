@@ -25,6 +25,7 @@ use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::rational;
 use lindstedt_phase::amplitudes::polar::{Polar, Read};
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay, scalars::Scalars};
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -183,7 +184,12 @@ impl<'a> Task<'a> {
         }
         let stiffness = provisional.as_number(&linear.stiffness);
         let stiffness = stiffness.ok_or(ExpandError::NotWeaklyNonlinear)?;
-        let frequency = ring.square_root(&stiffness).ok_or(ExpandError::StiffnessNotSquare)?;
+        let frequency = ring.square_root(&stiffness).filter(|nu| !ring.is_zero(nu));
+        let frequency = frequency.ok_or_else(|| match ring.sign(&stiffness) {
+            Some(Ordering::Equal) => ExpandError::NoStiffness,
+            Some(Ordering::Less) => ExpandError::NegativeStiffness,
+            _ => ExpandError::StiffnessNotSquare,
+        })?;
 
         let mut all = Vec::new();
         for (delay, time) in self.excitation.delays.iter().zip(&times) {
@@ -491,7 +497,7 @@ impl<'a> Task<'a> {
             let field = Arc::clone(&field);
             Ok(Coefficient::Formula(Formula::new(move |style| field.print(&c, style))))
         };
-        let positive = |c: &_| field.as_rational(c).is_none_or(|q| q > 0);
+        let positive = |c: &_| field.sign(c).is_none_or(|sign| sign == Ordering::Greater);
         let single_cycle = self.single_cycle(&*field, &over, &positive, &formula)?;
         Ok(Averaging { single_cycle, ..self.finish(over, true, &formula)? })
     }

@@ -7,16 +7,16 @@
 //! equal sums are equal as data, and nothing cancels that does not cancel by itself, where powers of cos(q g T_0) would have
 //! coefficients that grow like 2^k with alternating signs. Where theta is a number of quarters of a turn they are numbers.
 
-use super::forces::{Angles as Named, divisor, named, quarters, wave_names};
+use super::forces::{Angles as Named, named, quarters, wave_names};
 use super::{System, Terms, Unit};
 use crate::averaging::constant;
 use lindstedt_algebra::Ring;
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::{Monomials, expand};
 use lindstedt_expand::{Excitation, ExpandError};
-use lindstedt_number::Exact;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::{Exact, common_measure};
 use lindstedt_phase::amplitudes::scalars::Scalars;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes, Late, Rates};
 use rug::Rational;
@@ -81,7 +81,7 @@ impl Delays {
                 bases.push((time.clone(), 1.into()));
                 (bases.len() - 1, 1.into())
             });
-            bases[base].1 = divisor(&bases[base].1, &multiple);
+            bases[base].1 = common_measure(&bases[base].1, &multiple);
             delays.push(Delay { time, base, multiple });
         }
         for delay in &mut delays {
@@ -91,7 +91,7 @@ impl Delays {
         let mut turns = Vec::new();
         for generator in 0..=generators.len() {
             let parts = all().filter_map(|rate| rate.get(generator));
-            let q = parts.fold(Rational::new(), |q, part| divisor(&q, part));
+            let q = parts.fold(Rational::new(), |q, part| common_measure(&q, part));
             for (base, (first, common)) in bases.iter().enumerate().filter(|_| !q.is_zero()) {
                 let number = Expression::Number(Rational::from(&q * common)) * first.clone();
                 let named = generator.checked_sub(1).map(|k| generators[k].clone());

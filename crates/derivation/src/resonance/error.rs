@@ -1,5 +1,6 @@
 //! Why equations have no slow flow.
 
+use lindstedt_phase::amplitudes::MOST_EXPONENTS;
 use rug::Rational;
 use thiserror::Error;
 
@@ -222,10 +223,25 @@ pub enum ResonanceError {
         size: f64,
     },
     /// The monomials have no place for so many symbols.
-    #[error("{count} parameters without a value are too many: sixteen exponents in all")]
+    #[error(
+        "a monomial has {MOST_EXPONENTS} exponents: two for each of the unknowns ({unknowns}), one for each phase of the forces \
+         ({forces}) and one for each parameter without a value and angle of a delay ({symbols}) are more"
+    )]
     TooManySymbols {
-        /// How many there are.
-        count: usize,
+        /// The unknowns.
+        unknowns: usize,
+        /// The phases of the forces; 1 where there are none.
+        forces: usize,
+        /// The parameters without a value, and what delays turn phases by.
+        symbols: usize,
+    },
+    /// The rates are whole multiples of no number but a very small one.
+    #[error(
+        "the frequencies {rates} have a ratio of too many digits: each is a multiple of their common measure, below 2^90"
+    )]
+    RatesApart {
+        /// The frequencies of unknowns and forces.
+        rates: String,
     },
     /// An exponent beyond the largest that monomials hold.
     #[error("order {order} needs an exponent beyond {largest}")]
@@ -241,4 +257,17 @@ pub enum ResonanceError {
         /// The limit.
         limit: usize,
     },
+}
+
+impl ResonanceError {
+    /// Why there is no algebra of amplitudes with these frequencies and rates of forces, and so many symbols.
+    pub(super) fn no_room(unknowns: &[Rational], forces: &[Vec<Rational>], symbols: usize) -> Self {
+        let (count, phases) = (unknowns.len(), forces.len().max(1));
+        if 2 * count + phases + symbols > MOST_EXPONENTS {
+            return Self::TooManySymbols { unknowns: count, forces: phases, symbols };
+        }
+        let rates: Vec<String> =
+            unknowns.iter().chain(forces.iter().flatten()).map(ToString::to_string).collect();
+        Self::RatesApart { rates: rates.join(", ") }
+    }
 }

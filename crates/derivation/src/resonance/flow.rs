@@ -10,9 +10,10 @@ use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_algebra::{AmplitudeAlgebra, PhaseError};
+use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_expand::resonance::{checked_residual, energy, resonant};
-use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
+use lindstedt_expand::{Binding, Equation, ExpandError, OrderWork, compile_system};
 use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::scalars::{Integers, Scalars};
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Rates};
@@ -57,6 +58,28 @@ pub(super) fn compiled_form(system: &System) -> Vec<Expression> {
     system.with_waves(&|function, l, m| {
         let sine = i32::from(function == Function::Sin);
         format!("{WAVE}{l},{m},{sine}")
+    })
+}
+
+/// The equations of a system in an algebra; a term that is refused as it was written, the unknowns by their names.
+pub(super) fn compiled<S: Scalars>(
+    algebra: &Amplitudes<S>,
+    (system, names): (&System, Names<'_>),
+    binding: &dyn Binding<Amplitudes<S>>,
+    order: usize,
+) -> Result<Equation<Amplitudes<S>>, ExpandError> {
+    let equations = compiled_form(system);
+    compile_system(algebra, &equations, binding, order).map_err(|error| {
+        let ExpandError::UnsupportedTerm { term } = &error else { return error };
+        let refused = |e: &&Expression| e.print("eps", Style::Text) == *term;
+        let Some(found) = equations.iter().flat_map(Expression::nodes).find(refused) else {
+            return error;
+        };
+        let wave = |e: &Expression| match e {
+            Expression::Parameter(name) => system.written(wave_of(name)?),
+            _ => None,
+        };
+        ExpandError::UnsupportedTerm { term: names.shown(&found.map(&wave)) }
     })
 }
 
@@ -123,13 +146,17 @@ impl Job<'_> {
         let equations = compiled_form(system);
         let delays = Delays::of(&equations, &rates, generators, system.unit.as_deref())?;
         let algebra = Amplitudes::turning(scalars, rates.clone(), &names, delays.phases());
-        let count = names.len() + delays.phases();
+        let no_room = || {
+            let forces: Vec<_> = system.forces.iter().map(|phase| phase.rate.clone()).collect();
+            let symbols = names.len() + delays.phases();
+            ResonanceError::no_room(&system.frequencies, &forces, symbols)
+        };
         let unit = system.unit.iter().map(|unit| &*unit.name).find(|unit| names.contains(unit));
         let algebra = algebra.and_then(|algebra| match unit {
             Some(unit) => algebra.with_unit(unit),
             None => Some(algebra),
         });
-        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count })?.with_inverses();
+        let algebra = algebra.ok_or_else(no_room)?.with_inverses();
         let time = |algebra: &Amplitudes<S>, e: &Expression| {
             let binding = Symbols { algebra, step: 1, other };
             constant(algebra, e, &|name| binding.parameter(name))
@@ -137,9 +164,10 @@ impl Job<'_> {
         let late = || delays.put_in(algebra, &rates, &time);
         let algebra = late().ok_or_else(|| self.refused_delay())?.with_stop(settings.stop.clone());
         let binding = Symbols { algebra: &algebra, step: 1, other };
-        let graph = compile_system(&algebra, &equations, &binding, settings.order)?;
+        let names = Names(self.problem);
+        let graph = compiled(&algebra, (system, names), &binding, settings.order)?;
         let sigma = |e: &Expression| {
-            let term = Names(self.problem).shown(e);
+            let term = names.shown(e);
             let refused = || ResonanceError::NotAForce { term };
             constant(&algebra, e, &|name| binding.parameter(name)).ok_or_else(refused)
         };

@@ -7,6 +7,7 @@ use super::{Names, ResonanceError};
 use lindstedt_equation::monomials::{Monomial, expand};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
+use lindstedt_number::common_measure;
 use rug::{Integer, Rational};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -175,7 +176,7 @@ impl Class {
     /// Takes a force of this phase, where all its forces stay harmonics below [`HIGHEST`].
     fn take(&mut self, leading: &[Rational], angle: &Angle) -> bool {
         let Some(ratio) = self.ratio(leading, angle) else { return false };
-        let common = divisor(&self.common, &ratio);
+        let common = common_measure(&self.common, &ratio);
         let largest = ratio.abs().max(self.largest.clone());
         let fits = Rational::from(&largest / &common) <= HIGHEST;
         if fits {
@@ -300,13 +301,6 @@ pub(super) fn quarters(angle: &Expression) -> Option<Integer> {
     let quarters = angle.clone() * Expression::integer(2) * Expression::parameter("pi").pow(-1);
     let quarters = quarters.multiplied_out().and_then(|e| e.canonical().as_number());
     quarters.filter(Rational::is_integer).map(|q| q.numer().clone())
-}
-
-/// The largest rational number of which both are whole multiples; of 0 and q, |q|.
-pub(super) fn divisor(p: &Rational, q: &Rational) -> Rational {
-    let [left, right] =
-        [Integer::from(p.numer() * q.denom()), Integer::from(q.numer() * p.denom())];
-    Rational::from((left.gcd(&right), Integer::from(p.denom() * q.denom())))
 }
 
 /// The resonance sum_j k_j nu_j = m Omega that a rate is near without being at it, as the rate at it;

@@ -131,7 +131,7 @@ pub fn normal_mode(
     let ratios: Vec<_> =
         modes.squares.iter().map(|other| Rational::from(other / &square)).collect();
     let algebra = Amplitudes::new(Integers, &[1.into()], &Rational::new(), &list);
-    let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: list.len() })?;
+    let algebra = algebra.ok_or_else(|| ResonanceError::no_room(&[1.into()], &[], list.len()))?;
     let algebra = algebra.with_unknowns(&ratios).with_inverses().with_stop(settings.stop.clone());
     let binding = Symbols { algebra: &algebra, step: 1, other: &|_| None };
     let graph = compile_system(&algebra, &equations, &binding, settings.order)?;

@@ -10,8 +10,8 @@
 
 mod start;
 
-use super::flow::{Symbols, compiled_form, wave_of};
-use super::forces::{divisor, is_wave};
+use super::flow::{Symbols, compiled, wave_of};
+use super::forces::is_wave;
 use super::print::print_powers;
 use super::system::{Detuned, refuse_delays};
 use super::{Element, Names, ResonanceError, System, Terms};
@@ -24,7 +24,8 @@ use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Style, Term, print_sum};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::resonance::{check_flow, periodic, resonant};
-use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
+use lindstedt_expand::{Binding, ExpandError, OrderWork};
+use lindstedt_number::common_measure;
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
 use rug::Rational;
@@ -189,7 +190,7 @@ fn sought_at(
         return Err(ResonanceError::SecondPhase { phases: system.forces.len() }.into());
     }
     let frequency = system.frequencies.first().cloned().unwrap_or_default();
-    let base = divisor(&frequency, &system.force());
+    let base = common_measure(&frequency, &system.force());
     let whole = |rate: &Rational| {
         let high = ResonanceError::TooHigh { order: settings.order, largest: i32::MAX };
         Rational::from(rate / &base).numer().to_i32().ok_or(high)
@@ -200,7 +201,9 @@ fn sought_at(
     refuse_taken(&symbols, |base, numbered| (numbered && base == "x").then_some("a coefficient"))?;
     let names: Vec<&str> = symbols.iter().map(String::as_str).collect();
     let algebra = Amplitudes::new(Integers, &system.frequencies, &base, &names);
-    let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
+    let no_room =
+        || ResonanceError::no_room(&system.frequencies, &[vec![base.clone()]], names.len());
+    let algebra = algebra.ok_or_else(no_room)?;
     let algebra = algebra.with_stop(settings.stop.clone());
     let mut found = Sought {
         problem: problem.clone(),
@@ -302,14 +305,16 @@ impl Task<'_> {
         }
         let names: Vec<&str> = self.system.symbols.iter().map(String::as_str).collect();
         let algebra = Amplitudes::new(Integers, &self.system.frequencies, self.base, &names);
-        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
+        let base = || [vec![self.base.clone()]];
+        let no_room = || ResonanceError::no_room(&self.system.frequencies, &base(), names.len());
+        let algebra = algebra.ok_or_else(no_room)?;
         let algebra = algebra.with_stop(self.settings.stop.clone());
         let symbols = Symbols { algebra: &algebra, step: self.step, other: &|_| None };
-        let equations = compiled_form(self.system);
+        let system = (self.system, self.names);
         let detuning = self.detuning(&algebra)?;
         let place = names.iter().position(|name| *name == self.name).unwrap_or_default();
         let mut flow = |order| {
-            let graph = compile_system(&algebra, &equations, &symbols, order)?;
+            let graph = compiled(&algebra, system, &symbols, order)?;
             let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
             let found = resonant(&algebra, &graph, order, &detuning, &mut on_order)?;
             let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
@@ -349,7 +354,7 @@ impl Task<'_> {
         let (algebra, order) = (self.algebra, self.settings.order);
         let symbols = Symbols { algebra, step: self.step.max(1), other: &|_| None };
         let binding = Seeking(symbols, self.name, &start.turn);
-        let graph = compile_system(algebra, &compiled_form(self.system), &binding, order)?;
+        let graph = compiled(algebra, (self.system, self.names), &binding, order)?;
         let detuning = self.detuning(algebra)?;
         let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
         let found = periodic(algebra, &graph, order, &detuning, vec![generating], &mut on_order)?;

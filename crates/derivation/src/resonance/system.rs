@@ -389,6 +389,21 @@ impl System {
         self.equations.iter().map(|e| e.map(&named)).collect()
     }
 
+    /// cos(m eta_l) or sin(m eta_l) with the angle of the phase in the time.
+    pub(super) fn written(&self, (l, m, sine): (usize, i32, bool)) -> Option<Expression> {
+        let phase = self.forces.get(l)?;
+        let unit = self.unit.as_ref().map_or_else(|| 1.into(), |unit| unit.expression());
+        let others = self.independent.iter().map(|name| Expression::parameter(name));
+        let rates = phase.rate.iter().zip(std::iter::once(unit).chain(others));
+        let rates = rates.map(|(q, factor)| Expression::Number(q.clone()) * factor);
+        let detuned =
+            (1i64..).zip(&phase.detuning).map(|(n, e)| Expression::Small.pow(n) * e.clone());
+        let rate = Expression::Sum(rates.chain(detuned).collect());
+        let angle = i64::from(m) * (rate * Expression::Time + phase.start.clone());
+        let function = if sine { Function::Sin } else { Function::Cos };
+        Some(angle.canonical().apply(function))
+    }
+
     /// With the symbol of the detuning of the only force from a rate.
     fn detuned_from(mut self, at: Rational) -> Self {
         let rate = self.force();

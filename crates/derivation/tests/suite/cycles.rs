@@ -81,8 +81,14 @@ fn one_cycle_in_symbols_and_balls() {
         "x'' + 2*x = eps*(1 + x^2)*x'",
         "x'' + x = -eps*(1 + 2*x^2)*x' + eps*mu*x^3",
         "x'' + x = eps*mu*x'",
+        "x'' + x = -eps*(pi + x^2)*x' + eps*mu*x^3",
+        "x'' + x = -eps*(pi + x^2)*x'",
     ] {
         assert!(averaged(equation, 2).single_cycle.is_none(), "{equation}");
+    }
+    // a^2 = 4 pi, and one of unknown sign.
+    for equation in ["x'' + x = eps*(pi - x^2)*x'", "x'' + x = eps*(mu*pi - x^2)*x'"] {
+        assert!(averaged(equation, 2).single_cycle.is_some(), "{equation}");
     }
 }
 

@@ -4,6 +4,7 @@ use crate::answer::estimated;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Standing, Work};
 use lindstedt_algebra::Stop;
+use lindstedt_equation::print::Style;
 use lindstedt_recognise::{OnePhase, PhaseCycle};
 use serde::Serialize;
 use std::time::Instant;
@@ -110,9 +111,19 @@ impl FirstOrder {
         stop: &Stop,
     ) -> Result<Self, Error> {
         let top = largest.to_f64();
-        let message = "the integral of the law over the phase does not converge at this amplitude: it has no \
-                       finite value on the way, a pole that is not integrable, or oscillates too fast";
-        let undefined = || Refused::no_answer("no-value", message, "a smaller --cycles");
+        let undefined = || match law.overflow(top) {
+            Some(term) => {
+                let term = term.print(small, Style::Text);
+                let message =
+                    format!("{term} passes the largest double, 1.8e308, at this amplitude");
+                Refused::undecided("too-large", message, "a smaller --cycles")
+            }
+            None => {
+                let message = "the integral of the law over the phase does not converge at this amplitude: it has no \
+                               finite value on the way, a pole that is not integrable, or oscillates too fast";
+                Refused::no_answer("no-value", message, "a smaller --cycles")
+            }
+        };
         let rates = law.rates(top).ok_or_else(undefined)?;
         let cycle = |cycle| FirstOrderCycle::new(law, &cycle, eps);
         let sticking = law.sticking(top, stop).into_iter().map(|found| {

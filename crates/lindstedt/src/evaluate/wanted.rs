@@ -72,7 +72,11 @@ impl Oscillator {
         }
         let field =
             Field::of_problem(problem, &values).map_err(|failure| self.unproved(failure))?;
-        let kind = match condition {
+        // A force whose frequency is set to 0 is a constant: what is free in a forced equation is not free in this one.
+        let still = field.is_autonomous() && equation.contains(&Expression::Time);
+        let drifts = |condition: &Condition| *condition == Condition::FreeAmplitude;
+        let asked = self.asked_condition().is_some();
+        let kind = match condition.filter(|condition| asked || !still || !drifts(condition)) {
             _ if !field.is_autonomous() => Kind::Forced(1),
             None if field.is_reversible() => Kind::InitialAmplitude(amplitude()),
             None => Kind::LimitCycle,

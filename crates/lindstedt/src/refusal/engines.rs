@@ -74,7 +74,7 @@ impl Refusal for ExpandError {
                 "irrational",
                 "a name in its place (c*x^3) stays a symbol in `lindstedt derive` and has a rational value with --set; `lindstedt simulate` takes it as it is",
             ),
-            Self::UnsupportedTerm { term } if term.contains("t)") || term == "t" => (
+            Self::UnsupportedTerm { term } if is_force(term) => (
                 NoAnswer,
                 "no-expansion",
                 "forces are averaged: `lindstedt derive`, near a resonance also `lindstedt respond`; \
@@ -102,6 +102,12 @@ impl Refusal for ExpandError {
         };
         (kind, code, hint.to_owned())
     }
+}
+
+/// Whether a term is a force, cos(omega*t), or the time: a function of one, or its inverse, is averaged no more than here.
+fn is_force(term: &str) -> bool {
+    let wave = term.starts_with("cos(") || term.starts_with("sin(");
+    term == "t" || wave && term.ends_with("t)")
 }
 
 /// Of a parameter that is sought.
@@ -193,7 +199,13 @@ impl Refusal for ResonanceError {
             Self::NoOscillation { .. } | Self::Flutter => (NoAnswer, "no-expansion", ""),
             Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),
             Self::NearMiss { .. } => (NoAnswer, "near-miss", AT_RESONANCE),
+            Self::TooManySymbols { symbols: 0, .. } => (
+                NoAnswer,
+                "too-many-symbols",
+                "`lindstedt simulate` takes one unknown, `derive --mode` one mode of several",
+            ),
             Self::TooManySymbols { .. } => (NoAnswer, "too-many-symbols", "--set some of them"),
+            Self::RatesApart { .. } => (Undecided, "too-large", FRACTION),
             Self::TooHigh { .. } | Self::TooManyTerms { .. } => {
                 (Undecided, "too-large", "lower --order")
             }
@@ -244,9 +256,11 @@ impl Refusal for DerivationError {
                 "`lindstedt simulate` takes it; here the equation would have to be odd in x, and \
                  the same backwards in time",
             ),
-            Self::BetweenTurningPoints { reason, .. } => {
+            Self::BetweenTurningPoints { reason, late_or_forced, .. } => {
                 let hint = match **reason {
-                    Reason::NonSmooth(_) | Reason::NotPolynomial(_) | Reason::NotOdd(_) => {
+                    Reason::NonSmooth(_) | Reason::NotPolynomial(_) | Reason::NotOdd(_)
+                        if !late_or_forced =>
+                    {
                         "`lindstedt evaluate --cycles AMPLITUDE` averages any law to first order, \
                          `lindstedt simulate` takes it"
                     }

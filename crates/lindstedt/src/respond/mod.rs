@@ -11,7 +11,7 @@ mod validity;
 
 use crate::grid::Axis;
 use crate::refusal::Refused;
-use crate::{Answer, Error, Exact, Oscillator, Remark, Standing, Work};
+use crate::{Answer, Error, Exact, Oscillator, Remark, Standing, Stop, Work};
 pub use answer::{
     Branch, Change, Corner, Curve, Destination, Estimate, Point, Reading, Response, State, States,
 };
@@ -54,11 +54,11 @@ impl Respond {
     /// Reads `NAME=LO..HI[:COUNT]` or `NAME=V1,V2,...`; without a count 200 steps.
     ///
     /// # Errors
-    /// Those of [`Axis::parse`]; [`Refused`] for what a file calls fixed.
-    pub fn read_sweep(oscillator: &Oscillator, text: &str) -> Result<Axis, Error> {
+    /// Those of [`Axis::parse_until`]; [`Refused`] for what a file calls fixed.
+    pub fn read_sweep(oscillator: &Oscillator, text: &str, stop: &Stop) -> Result<Axis, Error> {
         let counted = text.rsplit_once("..").is_none_or(|(_, rest)| rest.contains(':'));
         let steps = if counted { String::new() } else { format!(":{STEPS}") };
-        oscillator.axis(&format!("{text}{steps}"))
+        oscillator.axis_until(&format!("{text}{steps}"), stop)
     }
 
     /// Reads `X,V`, of several unknowns one pair after the other.

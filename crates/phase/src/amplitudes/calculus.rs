@@ -293,7 +293,7 @@ impl<S: Scalars> Amplitudes<S> {
             return Ok(Divisor { inverse: self.rational(&divisor.recip()), size });
         }
         let factors = match &unknown.rate {
-            Some(nu) => [-1, 1].map(|sign: i64| {
+            Some(nu) => [-1, 1].map(|sign: i128| {
                 let sum: Multiples = nu.iter().zip(&lambda).map(|(a, b)| a + sign * b).collect();
                 self.value(&sum)
             }),

@@ -58,7 +58,7 @@ impl<S: Scalars> Amplitudes<S> {
         let all = 0..=self.generators.len();
         // Without a force its rate is 0.
         self.rates =
-            [1, 2].map(|rate| all.clone().map(|k| i64::from(k == rate)).collect()).to_vec();
+            [1, 2].map(|rate| all.clone().map(|k| i128::from(k == rate)).collect()).to_vec();
         self.unknowns = self.of_own_rates();
         self
     }

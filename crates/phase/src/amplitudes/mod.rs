@@ -27,12 +27,13 @@ pub mod words;
 
 pub use delay::{Delay, Late};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
-use lindstedt_number::Whole;
+use lindstedt_number::{Whole, common_measure};
 use rug::{Integer, Rational};
 use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use formulas::Divided;
+pub use words::DIGITS as MOST_EXPONENTS;
 use words::{DIGITS, Layout, Word};
 
 /// A word with the real and the imaginary numerator of its coefficient.
@@ -88,8 +89,11 @@ impl<E> Rates<E> {
     }
 }
 
-/// The multiples of 1, g_1, ... in a rate, times the common denominator.
-type Multiples = Vec<i64>;
+/// The multiples of 1, g_1, ... in a rate, over their common measure.
+type Multiples = Vec<i128>;
+
+/// Bits of such a multiple: sixteen of them times exponents of 31 bits add up in a word.
+const RATE_BITS: u32 = 90;
 
 /// What an unknown is compared with.
 #[derive(Clone, Debug)]
@@ -113,9 +117,9 @@ pub struct Amplitudes<S: Scalars> {
     symbols: Vec<String>,
     /// M.
     amplitudes: usize,
-    /// q nu_j of the amplitudes and q Omega_l with the common denominator q.
+    /// nu_j/q of the amplitudes and Omega_l/q with the common measure q.
     rates: Vec<Multiples>,
-    common: i64,
+    common: Rational,
     generators: Vec<AmplitudeElement<S::Element>>,
     /// How many constant phases e^{i theta} follow those of the forces.
     turns: usize,
@@ -159,8 +163,15 @@ impl<S: Scalars> Amplitudes<S> {
         }
         let layout = Layout::of(2 * count + forces.len() + symbols.len())?;
         let all = || amplitudes.iter().chain(&forces);
-        let common = all().flatten().fold(Integer::from(1), |q, nu| q.lcm(nu.denom()));
-        let whole = |q: &Rational| Rational::from(q * &common).numer().to_i32().map(i64::from);
+        let common =
+            all().flatten().fold(Rational::new(), |common, nu| common_measure(&common, nu));
+        if common == 0 {
+            return None;
+        }
+        let whole = |q: &Rational| {
+            let multiple = Rational::from(q / &common).into_numer_denom().0;
+            multiple.to_i128().filter(|_| multiple.significant_bits() <= RATE_BITS)
+        };
         let multiples = |rate: &Vec<Rational>| -> Option<Multiples> {
             let mut list: Multiples = rate.iter().map(whole).collect::<Option<_>>()?;
             list.resize(1 + generators.len(), 0);
@@ -168,7 +179,7 @@ impl<S: Scalars> Amplitudes<S> {
         };
         let mut algebra = Self {
             rates: all().map(multiples).collect::<Option<_>>()?,
-            common: i64::from(common.to_i32()?),
+            common,
             amplitudes: count,
             generators: Vec::new(),
             turns: 0,
@@ -217,10 +228,10 @@ impl<S: Scalars> Amplitudes<S> {
     #[must_use]
     pub fn with_unknowns(mut self, squares: &[Rational]) -> Self {
         let behind = squares.iter().skip(self.amplitudes).map(|square| {
-            let scaled = Rational::from(square * Integer::from(self.common).square());
+            let scaled = square / self.common.clone().square();
             let root = scaled.numer().clone().sqrt();
             let is_square = scaled.is_integer() && root.clone().square() == *scaled.numer();
-            let rate = root.to_i64().filter(|_| is_square).map(|nu| {
+            let rate = root.to_i128().filter(|_| is_square).map(|nu| {
                 let mut rate = vec![0; 1 + self.generators.len()];
                 rate[0] = nu;
                 rate
@@ -321,29 +332,29 @@ impl<S: Scalars> Amplitudes<S> {
         self.phases() + self.symbols.len()
     }
 
-    /// q lambda.
+    /// lambda/q.
     fn eigenvalue(&self, word: Word) -> Multiples {
         let (digits, _) = self.layout.exponents(word, self.moving());
         let mut sum = vec![0; 1 + self.generators.len()];
         for (k, rate) in self.harmonic(&digits).iter().zip(&self.rates) {
-            sum.iter_mut().zip(rate).for_each(|(sum, rate)| *sum += i64::from(*k) * rate);
+            sum.iter_mut().zip(rate).for_each(|(sum, rate)| *sum += i128::from(*k) * rate);
         }
         sum
     }
 
     /// A rate that has no part in the generators.
-    fn rational_rate(&self, rate: &[i64]) -> Option<Rational> {
+    fn rational_rate(&self, rate: &[i128]) -> Option<Rational> {
         let alone = rate[1..].iter().all(|n| *n == 0);
-        alone.then(|| Rational::from((rate[0], self.common)))
+        alone.then(|| Rational::from(&self.common * Integer::from(rate[0])))
     }
 
     /// A rate as a constant.
-    fn value(&self, rate: &[i64]) -> AmplitudeElement<S::Element> {
-        let over = |n: i64| Rational::from((n, self.common));
-        let start = self.rational(&over(rate[0]));
+    fn value(&self, rate: &[i128]) -> AmplitudeElement<S::Element> {
+        let times = |n: i128| Rational::from(&self.common * Integer::from(n));
+        let start = self.rational(&times(rate[0]));
         let parts = rate[1..].iter().zip(&self.generators).filter(|(n, _)| **n != 0);
         parts.fold(start, |sum, (n, generator)| {
-            let part = self.scale(generator, &over(*n));
+            let part = self.scale(generator, &times(*n));
             if sum.terms.is_empty() { part } else { self.total(sum, &part, true) }
         })
     }

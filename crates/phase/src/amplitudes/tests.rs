@@ -245,3 +245,32 @@ fn numbered_sums_are_hashed_sums() {
     assert_eq!(t.mul(&both, &g), t.add(&t.mul(&f, &g), &t.mul(&g, &g)));
     assert_eq!(t.independent.load(Ordering::Relaxed).count_ones(), 3);
 }
+
+/// Frequencies are counted in their common measure: 10^100 and its triple are 1 and 3, 1 and 10^26 are compared exactly, and
+/// what exceeds the words is not taken.
+#[test]
+fn long_rates_are_compared_exactly() {
+    let power = |n: u32| Rational::from(Integer::from(Integer::u_pow_u(10, n)));
+    let of = |nu: Rational, force: Rational| Amplitudes::new(Integers, &[nu], &force, &[]);
+    let split = |t: &Amplitudes<Integers>, nu: &Rational, m: u32| {
+        let stiffness = t.rational(&nu.clone().square());
+        let linear = LinearPart { stiffness, damping: t.zero(), delayed: Vec::new() };
+        let (cos, _) = t.forcing(m)?;
+        let split = t.split(0, &linear, &cos).ok()?;
+        Some((t.is_zero(&split.response), t.is_zero(&split.flow)))
+    };
+    let huge = power(100);
+    let Some(t) = of(huge.clone(), Rational::from(&huge / 3u32)) else { panic!("a ratio of 3") };
+    let z = t.amplitude(0);
+    let square = t.rational(&-huge.clone().square());
+    assert_eq!(t.by_time(&t.by_time(&z)), t.mul(&square, &z));
+    assert_eq!(split(&t, &huge, 3), Some((true, false)), "resonance");
+    assert_eq!(split(&t, &huge, 2), Some((false, true)), "none");
+    let long = power(26);
+    let beside = Rational::from(&long + 1u32);
+    for (force, resonant) in [(long.clone(), true), (beside, false)] {
+        let Some(t) = of(long.clone(), force) else { panic!("26 digits") };
+        assert_eq!(split(&t, &long, 1), Some((resonant, !resonant)));
+    }
+    assert!(of(power(0), power(28)).is_none());
+}

@@ -15,7 +15,7 @@ mod zeros;
 use crate::local::Point;
 use integrals::tanh_sinh;
 use lindstedt_algebra::Stop;
-use lindstedt_equation::Expression;
+use lindstedt_equation::{Expression, Function};
 use std::f64::consts::PI;
 use zeros::zeros;
 
@@ -162,6 +162,29 @@ impl OnePhase {
         Some(Rates { amplitude: scaled(sums[0], factor), phase: scaled(sums[1], factor / a) })
     }
 
+    /// What is beyond all doubles at some time of a motion of this amplitude, though its own argument is not: an exponential or
+    /// a power.
+    #[must_use]
+    pub fn overflow(&self, a: f64) -> Option<&Expression> {
+        let parameter = self.belt.as_deref().map(|name| (name, self.value));
+        let value = |e: &Expression, psi: f64| {
+            let (sin, cos) = psi.sin_cos();
+            let mut point = Point::at(0.0, a * cos, -a * self.frequency * sin).with(parameter);
+            e.evaluate(&mut point).map(|local| local[0])
+        };
+        let turn = || (0..CELLS).map(|n| 2.0 * PI * f64::from(n) / f64::from(CELLS));
+        let beyond = |e: &Expression, z: &Expression| {
+            turn().any(|psi| {
+                let [from, to] = [z, e].map(|e| value(e, psi).unwrap_or(f64::NAN));
+                from.is_finite() && from != 0.0 && to.is_infinite()
+            })
+        };
+        self.law.find(&|e| match e {
+            Expression::Power(z, _) | Expression::Function(Function::Exp, z) => beyond(e, z),
+            _ => false,
+        })
+    }
+
     /// What the integrals may be wrong by where a jump or bend is touched at a turn of x or of x': cos psi rounds to 1 within
     /// sqrt(2 u) of it, so that the side is not known there.
     fn touching(&self, value: &dyn Fn(&Expression, f64) -> Option<f64>, a: f64) -> f64 {
@@ -201,11 +224,15 @@ impl OnePhase {
                 None => zeros.unresolved.push([a - error, a + error]),
             }
         }
+        let asked = |list: Vec<[f64; 2]>| {
+            let starts = list.into_iter().filter(|[from, _]| *from <= largest);
+            starts.map(|[from, to]| [from, to.min(largest)]).collect()
+        };
         PhaseCycles {
             cycles,
             touching: zeros.touching.into_iter().filter(within).collect(),
-            steady: zeros.steady,
-            unresolved: zeros.unresolved,
+            steady: asked(zeros.steady),
+            unresolved: asked(zeros.unresolved),
             cell: largest / f64::from(CELLS),
         }
     }

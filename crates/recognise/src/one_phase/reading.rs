@@ -46,7 +46,11 @@ impl OnePhase {
                 1 => {
                     let mut bare = m.clone();
                     bare.order = 0;
-                    law.push(all.tree(&bare, q));
+                    let bare = all.tree(&bare, q);
+                    if bare.contains(&Expression::Small) {
+                        return Err(refused(Why::SmallInside));
+                    }
+                    law.push(bare);
                 }
                 _ => return Err(refused(Why::HigherOrder)),
             }
