@@ -14,10 +14,8 @@ use rug::{Float, Rational};
 
 /// omega^p of x'' + x (x^2)^delta = 0 at amplitude 1: (1 + delta)^(p/2) M(u)^(-p),
 /// M(u) = sum mu_m u^m = Gamma function, u = delta/(1 + delta).
-fn truth_at_one(power: i32, order: usize, bits: u32) -> Series<Float> {
-    let reals = Floats::new(bits);
-    let moments = means(order, Balls::new(bits));
-    let moments = Series::truncated(moments.iter().map(|mu| mu.midpoint().clone()).collect());
+fn truth_at_one(power: i32, moments: &Series<Float>, bits: u32) -> Series<Float> {
+    let (reals, order) = (Floats::new(bits), moments.coefficients.len() - 1);
     let of_u = moments.power(&reals, &Rational::from(-power)).unwrap().coefficients;
     let mut series = vec![reals.zero(); order + 1];
     for (j, y) in of_u.iter().enumerate() {
@@ -30,6 +28,12 @@ fn truth_at_one(power: i32, order: usize, bits: u32) -> Series<Float> {
         }
     }
     Series::truncated(series)
+}
+
+/// M.
+fn moments(order: usize, bits: u32) -> Series<Float> {
+    let moments = means(order, Balls::new(bits));
+    Series::truncated(moments.iter().map(|mu| mu.midpoint().clone()).collect())
 }
 
 /// Times a^(p delta).
@@ -65,9 +69,10 @@ fn exact_grid(orders: &[(usize, Route)], digits: &[usize]) -> Grid {
                     };
                 for &digits in digits {
                     let bits = (digits as f64 * 3.4) as u32 + 300 + 80 * order as u32;
+                    let moments = moments(order, bits);
                     for (series, power) in result.series.iter().zip([2, 1, -1]) {
                         let truth =
-                            truth(power, &truth_at_one(power, order, bits), amplitude, bits);
+                            truth(power, &truth_at_one(power, &moments, bits), amplitude, bits);
                         for (n, truth) in truth.iter().enumerate() {
                             let label = format!("{label} {} {n} digits {digits}", series.quantity);
                             match result.number(series.quantity, n, digits) {
@@ -92,7 +97,8 @@ fn numeric_grid(orders: &[usize], tiers: &[Tier]) -> Grid {
     let mut grid = Grid::default();
     for &order in orders {
         let bits = 2_000 + 60 * order as u32;
-        let at_one = [2, 1, -1].map(|power| (power, truth_at_one(power, order, bits)));
+        let moments = moments(order, bits);
+        let at_one = [2, 1, -1].map(|power| (power, truth_at_one(power, &moments, bits)));
         for amplitude in AMPLITUDES {
             let truths: Vec<_> =
                 at_one.iter().map(|(power, one)| truth(*power, one, amplitude, bits)).collect();

@@ -106,7 +106,7 @@ fn sticking_begins_where_the_cycle_meets_the_belt() {
         for (factor, sticks) in [(0.997, true), (1.003, false)] {
             let belt = format!("{:.6}", belt * factor);
             assert_eq!(cycles(b, &belt, region).len(), usize::from(!sticks), "b = {b}, {belt}");
-            let motion = motion(b, &belt, top, 4000.0);
+            let motion = motion(b, &belt, top, 2000.0);
             let sticking: f64 = motion.sticking_time.decimal.parse().unwrap();
             assert_eq!(sticking > 0.0, sticks, "b = {b}, {belt}: {sticking}");
         }
