@@ -13,6 +13,7 @@ use lindstedt_phase::trigonometric::TrigonometricPolynomial;
 use lindstedt_series::Series;
 use rayon::prelude::*;
 use rug::{Integer, Rational};
+use std::borrow::Cow;
 use std::iter::repeat_n;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
@@ -76,10 +77,10 @@ fn product<A: PhaseAlgebra>(
     factors.fold(one, |product, f| product.mul(algebra, f, last)).coefficients
 }
 
-/// Numerators of the cosines and sines over one denominator.
-struct Whole {
-    denominator: Integer,
-    harmonics: [Vec<Integer>; 2],
+/// Numerators of the cosines and sines over one denominator, each times a small factor: those of a long expansion are not copied.
+struct Whole<'a> {
+    denominator: Cow<'a, Integer>,
+    harmonics: [Vec<(i64, Cow<'a, Integer>)>; 2],
 }
 
 /// A common multiple: few are greater than those before, and a division costs less than a greatest common divisor.
@@ -89,46 +90,51 @@ fn enlarge(multiple: &mut Integer, by: &Integer) {
     }
 }
 
-impl Whole {
+impl<'a> Whole<'a> {
     fn new(f: &TrigonometricPolynomial<Rational>) -> Self {
         let mut denominator = Integer::from(1);
         f.cos.iter().chain(&f.sin).for_each(|c| enlarge(&mut denominator, c.denom()));
-        let numerator =
-            |c: &Rational| c.numer() * Integer::from(denominator.div_exact_ref(c.denom()));
+        let numerator = |c: &Rational| {
+            let own = c.numer() * Integer::from(denominator.div_exact_ref(c.denom()));
+            (1, Cow::Owned(own))
+        };
         let harmonics = [&f.cos, &f.sin].map(|list| list.iter().map(numerator).collect());
-        Self { denominator, harmonics }
+        Self { denominator: Cow::Owned(denominator), harmonics }
     }
 
     /// A function or, with j = 1, its derivative.
-    fn of(f: &Function, j: usize) -> Self {
+    fn of(f: &'a Function, j: usize) -> Self {
         let (denominator, terms) = f.numerators();
         let mut harmonics = [const { Vec::new() }; 2];
         for (k, sine, c) in terms {
             // cos' = -sin, sin' = cos.
             let factor = if j == 0 { 1 } else { k as i64 * if sine { 1 } else { -1 } };
-            let list: &mut Vec<Integer> = &mut harmonics[usize::from(sine) ^ j];
-            list.resize_with(list.len().max(k + 1), Integer::new);
-            list[k] = Integer::from(c * factor);
+            let list: &mut Vec<_> = &mut harmonics[usize::from(sine) ^ j];
+            list.resize_with(list.len().max(k + 1), || (0, Cow::Owned(Integer::new())));
+            list[k] = (factor, Cow::Borrowed(c));
         }
-        Self { denominator: denominator.clone(), harmonics }
+        Self { denominator: Cow::Borrowed(denominator), harmonics }
     }
 
     /// 2 <f g> times both denominators: <1> = 2 <cos^2>.
     fn twice_mean(&self, other: &Self) -> Integer {
         let mut sum = Integer::new();
+        let mut add =
+            |((m, f), (n, g)): (&(i64, Cow<'_, Integer>), &(i64, Cow<'_, Integer>))| match (m, n) {
+                (1, 1) => sum += &**f * &**g,
+                _ => sum += Integer::from(&**f * &**g) * m * n,
+            };
         for (f, g) in self.harmonics.iter().zip(&other.harmonics) {
-            f.iter().zip(g).for_each(|(f, g)| sum += f * g);
+            f.iter().zip(g).for_each(&mut add);
         }
-        if let (Some(f), Some(g)) = (self.harmonics[0].first(), other.harmonics[0].first()) {
-            sum += f * g;
-        }
+        self.harmonics[0].iter().zip(&other.harmonics[0]).take(1).for_each(add);
         sum
     }
 
     fn mean(pairs: &[(&Self, &Self)]) -> Rational {
         let of = |(f, g): &(&Self, &Self)| {
             let sum = f.twice_mean(g);
-            (!sum.is_zero()).then(|| (sum, Integer::from(&f.denominator * &g.denominator)))
+            (!sum.is_zero()).then(|| (sum, Integer::from(&*f.denominator * &*g.denominator)))
         };
         let parts: Vec<_> = pairs.iter().filter_map(of).collect();
         let mut denominator = Integer::from(1);
@@ -151,7 +157,7 @@ pub(crate) fn proved_exponent(equation: &Expression, cycle: &Proved) -> Option<V
             product(&algebra, &x, [i, j]).iter().map(Whole::new).collect()
         }
     };
-    let mean = |pairs: &[(&Whole, &Whole)]| Some(Whole::mean(pairs));
+    let mean = |pairs: &[(&Whole<'_>, &Whole<'_>)]| Some(Whole::mean(pairs));
     let omega = Series::truncated(cycle.frequency.clone());
     let means = Means { product: &orders, mean: &mean };
     (cycle.stiffness == 1).then(|| means.exponent(&Rationals, equation, &omega))?
