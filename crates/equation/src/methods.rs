@@ -152,7 +152,8 @@ fn lindstedt(
     if has_velocity && against.is_empty() {
         match stiffness {
             None => against.push(Reason::UnknownFrequency),
-            Some(kappa) if rational_root(kappa).is_none() => {
+            // What is zero is said to be that where it is divided by.
+            Some(kappa) if !kappa.is_zero() && rational_root(kappa).is_none() => {
                 against.push(Reason::IrrationalFrequency);
             }
             _ => {}

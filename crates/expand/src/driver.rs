@@ -361,11 +361,11 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         if !algebra.agrees(&order_zero, &algebra.scale_by(&x0, &stiffness)) {
             return Err(ExpandError::NotWeaklyNonlinear);
         }
-        if equation.has_velocity() && stiffness != constants.one() {
-            return Err(ExpandError::StiffnessNotOne);
-        }
         if constants.is_zero(&stiffness) {
             return Err(ExpandError::NoStiffness);
+        }
+        if equation.has_velocity() && stiffness != constants.one() {
+            return Err(ExpandError::StiffnessNotOne);
         }
         let inverse_stiffness =
             constants.reciprocal(&stiffness).ok_or(ExpandError::SingularStiffness)?;

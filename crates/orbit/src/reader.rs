@@ -179,6 +179,7 @@ impl Operations for Reader {
                 // A product of parameters and a number can be divided by.
                 if let [(key, waves)] = &base.0.iter().collect::<Vec<_>>()[..]
                     && key.powers.is_empty()
+                    && key.time == 0
                     && let Some(q) = Sum([(Key::default(), (*waves).clone())].into()).as_number()
                 {
                     let mut inverse = (*key).clone();

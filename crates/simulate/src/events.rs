@@ -135,9 +135,17 @@ impl<R: Real> Integrator<'_, R> {
             let side = &mut self.sides[index];
             if *side == 0 {
                 *side = leading(row.get(*skip..).unwrap_or_default()).unwrap_or(0);
-            } else if *skip == 0 && sign == -*side {
-                *side = sign;
-                return hit(Surface::Section(index), sign);
+                continue;
+            }
+            // What ends a step on the section exactly, as a switch of the same argument does, was not met within it.
+            let ahead = match sign {
+                0 => leading(row.get(*skip..).unwrap_or_default()).unwrap_or(0),
+                _ if *skip == 0 => sign,
+                _ => *side,
+            };
+            if ahead == -*side {
+                *side = ahead;
+                return hit(Surface::Section(index), ahead);
             }
         }
         None

@@ -99,6 +99,14 @@ fn samples_and_sections() {
     assert!((x(89) - x(87)).abs() < 1e-3 && (x(89) - x(88)).abs() > 1.0, "{} {}", x(88), x(89));
     let cycle = json(&["van-der-pol", "--periods", "8", "--section", "velocity", "--digits", "15"]);
     assert_eq!(cycle["section"]["points"].as_array().unwrap().len(), 8);
+    // A section on which the force bends: steps end on it, exactly or beside it.
+    let drag = ["x'' + x = -x'*abs(x')/5", "--state", "1,1", "--until", "20", "--section"];
+    for way in [&["--digits", "10"][..], &["--digits", "15"], &["--digits", "30"], &["--f64"]] {
+        let found = json(&[&drag[..], &["velocity"], way].concat());
+        let points = found["section"]["points"].as_array().unwrap();
+        let slow = |point: &Value| point[2].as_f64().is_some_and(|v| v.abs() < 1e-9);
+        assert!(points.len() == 4 && points.iter().all(slow), "{way:?}: {points:?}");
+    }
 }
 
 #[test]

@@ -101,7 +101,9 @@ fn force(j: usize, equation: &Expression) -> Option<Monomials> {
         _ => None,
     });
     let all = expand(&named.canonical())?;
-    let plain = |m: &Monomial| m.is_power(0, 0);
+    // Of 1/x the work is a logarithm.
+    let divides = |(name, n): (&String, &i32)| *n < 0 && unknown(name).is_some();
+    let plain = |m: &Monomial| m.is_power(0, 0) && !m.parameters.iter().any(divides);
     all.terms.keys().all(plain).then_some(all)
 }
 

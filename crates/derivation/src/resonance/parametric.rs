@@ -8,6 +8,10 @@ use rug::Rational;
 
 type Row = Vec<Terms>;
 
+/// Terms of a quotient at most, and of all rows: weights that are longer are looked for no further.
+const LONGEST_QUOTIENT: usize = 64;
+const MOST_TERMS: usize = 1000;
+
 /// A number as a polynomial.
 pub(super) fn as_parameter_free(q: &Rational) -> Terms {
     let mut sum = Terms::new();
@@ -74,6 +78,9 @@ fn quotient(a: &Terms, b: &Terms) -> Option<Terms> {
         let term = Terms::from([(m, Rational::from(q / factor))]);
         subtract(&mut rest, &product(&term, &b)?);
         found.extend(term);
+        if found.len() > LONGEST_QUOTIENT {
+            return None;
+        }
     }
     scaled(&found, &own.times(&to_the(&other, -1))?)
 }
@@ -98,6 +105,9 @@ fn reduced(mut rows: Vec<Row>) -> Option<Vec<(usize, Row)>> {
     let mut done: Vec<(usize, Row)> = Vec::new();
     loop {
         rows.retain(|row| row.iter().any(|entry| !entry.is_empty()));
+        if rows.iter().flatten().map(Terms::len).sum::<usize>() > MOST_TERMS {
+            return None;
+        }
         let Some((i, j, chosen)) = pivot(&rows) else { return Some(done) };
         rows.swap_remove(i);
         for row in rows.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {

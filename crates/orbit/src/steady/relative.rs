@@ -356,6 +356,16 @@ impl FreePhase {
                 cells.extend([[a, middle], [middle, b]]);
             }
         }
+        // Of one that is met at the end of two cells both find it, within rounding.
+        let place = |it: &Located| it.at[4];
+        changes.sort_by(|a, b| place(a).total_cmp(&place(b)));
+        changes.dedup_by(|next, it| {
+            let same = place(next) - place(it) < 1e-7 * (high - low);
+            if same {
+                it.at[4] = 0.5 * (place(it) + place(next));
+            }
+            same
+        });
         let rates = vec![0.0; points.len()];
         Turning { branch: Branch { points, closed: false, complete: true }, rates, changes }
     }

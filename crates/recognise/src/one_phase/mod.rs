@@ -163,24 +163,27 @@ impl OnePhase {
     }
 
     /// What is beyond all doubles at some time of a motion of this amplitude, though its own argument is not: an exponential or
-    /// a power.
+    /// a power. Of a smaller amplitude it is not: a pole would be larger there.
     #[must_use]
     pub fn overflow(&self, a: f64) -> Option<&Expression> {
         let parameter = self.belt.as_deref().map(|name| (name, self.value));
-        let value = |e: &Expression, psi: f64| {
+        let value = |e: &Expression, a: f64, psi: f64| {
             let (sin, cos) = psi.sin_cos();
             let mut point = Point::at(0.0, a * cos, -a * self.frequency * sin).with(parameter);
             e.evaluate(&mut point).map(|local| local[0])
         };
-        let turn = || (0..CELLS).map(|n| 2.0 * PI * f64::from(n) / f64::from(CELLS));
-        let beyond = |e: &Expression, z: &Expression| {
+        // Off the turns, where rounding makes numbers of zeros.
+        let turn = || (0..CELLS).map(|n| 2.0 * PI * (f64::from(n) + 0.137) / f64::from(CELLS));
+        let beyond = |e: &Expression, z: &Expression, a: f64| {
             turn().any(|psi| {
-                let [from, to] = [z, e].map(|e| value(e, psi).unwrap_or(f64::NAN));
-                from.is_finite() && from != 0.0 && to.is_infinite()
+                let [from, to] = [z, e].map(|e| value(e, a, psi).unwrap_or(f64::NAN));
+                from.is_finite() && to.is_infinite()
             })
         };
         self.law.find(&|e| match e {
-            Expression::Power(z, _) | Expression::Function(Function::Exp, z) => beyond(e, z),
+            Expression::Power(z, _) | Expression::Function(Function::Exp, z) => {
+                beyond(e, z, a) && !beyond(e, z, 1e-3 * a)
+            }
             _ => false,
         })
     }
