@@ -101,7 +101,7 @@ pub struct SlowFlow {
     /// The smallest divisor of every order and unknown.
     pub nearest: Vec<Nearest>,
     /// Where the equations derive from a potential, but for terms of velocities that do no work together: the energy
-    /// x' N x'/2 + V order by order, N regular, of any signature, with the first entry 1 or parameters by which others are divided,
+    /// x' N x'/2 + V order by order, N regular, of any signature, with the first entry 1 or a polynomial in parameters by which others are divided,
     /// which was found to be conserved by the flow, identically. So it contains no fast phase. N is diagonal, unless it depends on
     /// parameters. Else empty.
     pub energy: Vec<Terms>,
