@@ -190,7 +190,8 @@ fn what_is_refused() {
         ("x' + x(t - 1)/a + x", "no-method", "x(t - 1)"),
         ("x' + x(t - 1)*(1 + x)", "unknown-parameter", "a"),
         ("x' + a*x(t - 1) + eps*x^2", "no-value-set", "eps"),
-        ("x' + a*x^2 + x", "no-hopf-point", "between -128 and 128"),
+        ("x' + a*x^2 + x", "no-hopf-point", "does not depend on a"),
+        ("x' + (1 + a^2)*x + x^2", "no-hopf-point", "between -128 and 128"),
         ("x' + a*x(t - 1) - 2*x'(t - 1)", "no-hopf-point", "no bound"),
     ];
     for (equation, code, word) in table {

@@ -1,5 +1,6 @@
 //! Why there is no derivation.
 
+use lindstedt_equation::Problem;
 use lindstedt_equation::classify::Reason;
 use lindstedt_equation::description::reason_text;
 use lindstedt_expand::ExpandError;
@@ -155,6 +156,18 @@ pub enum DerivationError {
     /// The value does not exist.
     #[error("the value does not exist")]
     NoValue,
+}
+
+impl DerivationError {
+    /// A name of the equation without a value; the number pi has one, which is none of Q.
+    #[must_use]
+    pub fn without_value(problem: &Problem, name: &str) -> Self {
+        let name = name.to_owned();
+        match &*name {
+            "pi" => Self::Irrational { value: name.clone(), name },
+            _ => Self::Unset { problem: problem.name.to_string(), name },
+        }
+    }
 }
 
 impl From<NumberError> for DerivationError {

@@ -140,7 +140,7 @@ fn one() -> Exact {
 }
 
 fn unset(problem: &Problem, name: &str) -> Error {
-    Error::Unset { problem: problem.name.to_string(), name: name.to_owned() }
+    Error::without_value(problem, name)
 }
 
 impl Setting {

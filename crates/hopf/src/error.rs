@@ -35,6 +35,19 @@ pub enum HopfError {
         /// The upper end.
         high: String,
     },
+    /// The roots do not depend on the parameter.
+    #[error(
+        "the linear part does not depend on {unknown}: no root of the characteristic function moves with it"
+    )]
+    Still {
+        /// The parameter.
+        unknown: String,
+    },
+    /// The characteristic function is even: with a root lambda, -lambda is one.
+    #[error(
+        "the linear part has no damping and no delay: its roots are pairs lambda, -lambda, of which none crosses the imaginary axis alone"
+    )]
+    Even,
     /// A root at zero, which is no pair i omega, -i omega, is not told from one.
     #[error(
         "a root of the characteristic function at 0 near {unknown} = {at} is not told from a pair i*omega, -i*omega with a small omega"

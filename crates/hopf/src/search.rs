@@ -60,7 +60,7 @@ struct Search<'a> {
 /// which there is one.
 ///
 /// # Errors
-/// [`HopfError::NoPoint`], [`HopfError::Undecided`], [`HopfError::ZeroRoot`], [`HopfError::UndecidedDelay`],
+/// [`HopfError::Still`], [`HopfError::Even`], [`HopfError::NoPoint`], [`HopfError::Undecided`], [`HopfError::ZeroRoot`], [`HopfError::UndecidedDelay`],
 /// [`HopfError::TooManyBoxes`], [`HopfError::Unbounded`]; [`HopfError::Stopped`] when `goes_on` said so.
 pub(crate) fn points(
     equation: &DelayEquation<Expression>,
@@ -68,6 +68,15 @@ pub(crate) fn points(
     near: f64,
     goes_on: &mut dyn FnMut() -> bool,
 ) -> Result<HopfPoints, HopfError> {
+    if equation.linear().all(|(term, factor)| {
+        term.coefficient.len() <= 1 && equation.delays[factor.delay].len() <= 1
+    }) {
+        return Err(HopfError::Still { unknown: unknown.to_owned() });
+    }
+    // Where L(i omega) is real for all omega, its zeros are curves in the plane of (alpha, omega), which no box isolates.
+    if equation.linear().all(|(_, factor)| factor.derivative.is_multiple_of(2) && factor.delay == 0) {
+        return Err(HopfError::Even);
+    }
     let ring = BallRing { balls: Balls::new(COARSE) };
     let equation = equation.over(&ring).ok_or(HopfError::Field)?;
     let search = Search { equation: &equation, ring };

@@ -204,7 +204,13 @@ fn what_has_no_answer() {
             term([1, 1].map(Expression::integer).to_vec(), &[(0, 0)]),
         ],
     };
-    assert!(matches!(cycle_of(&stays), Err(HopfError::Undecided { .. })));
+    assert_eq!(cycle_of(&stays).err(), Some(HopfError::Even));
+    // x'' + x + alpha x^2: none moves.
+    let mut still = stays;
+    still.terms[1] = term(constant((1, 1)), &[(0, 0)]);
+    still.terms.push(term([0, 1].map(Expression::integer).to_vec(), &[(0, 0); 2]));
+    let unknown = "alpha".to_owned();
+    assert_eq!(cycle_of(&still).err(), Some(HopfError::Still { unknown }));
     // x'' + alpha x'(t - 1) + x'^3: L(0) = 0 for every alpha, twice at alpha = 0, and the cycle at pi/2 has any mean.
     let translated = DelayEquation {
         order: 2,

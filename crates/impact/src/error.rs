@@ -52,7 +52,9 @@ pub enum ImpactError {
         size: f64,
     },
     /// Beyond the fold: the quadratic for the impact velocity has no real root.
-    #[error("no orbit beyond the fold: discriminant {discriminant:e} of the impact velocity")]
+    #[error(
+        "beyond the fold: the impact velocity is no real number (discriminant {discriminant:e})"
+    )]
     BeyondFold {
         /// The discriminant, or an upper bound where only its sign is known.
         discriminant: f64,

@@ -167,7 +167,8 @@ impl<S: Real> Parameters<S> {
         let above = self.restitution.clone() - self.restitution.integer(1);
         if self.restitution.is_negative() || above.is_positive() {
             let value = self.restitution.to_f64();
-            return Err(ImpactError::OutOfRange { name: "R_r", value, low: 0.0, high: 1.0 });
+            let name = "R_r, the restitution,";
+            return Err(ImpactError::OutOfRange { name, value, low: 0.0, high: 1.0 });
         }
         if self.damping.is_negative() {
             return Err(ImpactError::Negative { name: "c", value: self.damping.to_f64() });

@@ -3,7 +3,7 @@
 
 use crate::grid::Axis;
 use crate::refusal::{Refusal as _, Refused};
-use crate::{Error, Exact, Oscillator};
+use crate::{Error, Exact, Oscillator, Remark};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
@@ -63,6 +63,28 @@ impl Oscillator {
         }
     }
 
+    /// The same with the first values of ranges where the parameters have no value, and that it is so.
+    pub(crate) fn at_beginnings<'a>(
+        &self,
+        axes: impl Iterator<Item = &'a Axis>,
+    ) -> (Self, Vec<Remark>) {
+        let (mut case, mut remarks) = (self.clone(), Vec::new());
+        for axis in axes {
+            let name = &axis.name;
+            let occurs = self.problem().parameters.iter().any(|card| card.name == *name);
+            if let Some(first) = axis.values.first()
+                && occurs
+                && self.value(name).is_none()
+            {
+                case = case.with(name, first.clone());
+                remarks.push(Remark(format!(
+                    "{name} has no value: beside its range {name} = {first}, where that begins"
+                )));
+            }
+        }
+        (case, remarks)
+    }
+
     /// Refuses what the file calls `fixed`.
     pub(crate) fn check_varied(&self, name: &str) -> Result<(), Error> {
         let name = canonical_name(name.trim());
@@ -113,7 +135,10 @@ impl Oscillator {
             if let Some((name, how)) = names.iter().find_map(|name| follows.get_key_value(name)) {
                 hint = format!("{name} follows: {how}; {}", FOLLOWS.replace("NAME", name));
             }
-        } else if code == "no-method" && !self.problem().equation.contains(&Expression::Small) {
+        } else if code == "no-method"
+            && !matches!(refusal, Refusal::NoStiffness { .. })
+            && !self.problem().equation.contains(&Expression::Small)
+        {
             // Without it every term is one of order zero.
             hint = format!("a factor {small}, or orders = {{ NAME = 1 }}, marks the small terms");
         }

@@ -226,6 +226,10 @@ impl Refusal for HopfError {
                 (NoAnswer, "no-hopf-point", "--set NAME=VALUE searches about another value")
             }
             Self::NoRoot | Self::NoSpeed | Self::Unbounded => (NoAnswer, "no-hopf-point", ""),
+            Self::Still { .. } => {
+                (NoAnswer, "no-hopf-point", "--unknown of a parameter of the linear part")
+            }
+            Self::Even => (NoAnswer, "no-hopf-point", "`lindstedt simulate` follows its motions"),
             Self::Resonant { .. } => (NoAnswer, "resonance", "another value of a parameter"),
             Self::Field => (Usage, "no-value", "a constant of the equation is not real"),
             Self::NotEnoughBits { .. } => (Undecided, "not-enough-digits", "fewer --digits"),

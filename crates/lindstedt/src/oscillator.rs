@@ -429,7 +429,11 @@ impl Oscillator {
         }
         let message =
             "the equation is x' = ..., of first order, and this question is for x'' = ...";
-        let hint = "`lindstedt derive --unknown NAME` finds the Hopf points of a parameter and the cycles born there";
+        let hint = if self.problem.others.is_empty() {
+            "`lindstedt derive --unknown NAME` finds the Hopf points of a parameter and the cycles born there"
+        } else {
+            "`lindstedt derive --unknown NAME` takes one equation of first order, of one unknown, and no system"
+        };
         Err(Refused::no_answer("first-order", message, hint).into())
     }
 
@@ -449,8 +453,8 @@ impl Oscillator {
     }
 
     /// That a parameter has no value.
-    pub(crate) fn unset(&self, name: impl Into<String>) -> Error {
-        DerivationError::Unset { problem: self.problem.name.to_string(), name: name.into() }.into()
+    pub(crate) fn unset(&self, name: &str) -> Error {
+        DerivationError::without_value(&self.problem, name).into()
     }
 
     /// The header of an answer: the values are those that enter.

@@ -1,6 +1,7 @@
 //! Errors of the crate.
 
 use lindstedt_number::{Exact, NumberError};
+use rug::Rational;
 use thiserror::Error;
 
 /// Why there is no answer.
@@ -32,10 +33,12 @@ pub enum MelnikovError {
         power: usize,
     },
     /// The frequency of the unperturbed orbit is irrational: another unit of time makes it rational.
-    #[error("{name} is not the square of a rational number")]
+    #[error(
+        "the slope of the force at the saddle, {slope}, is not the square of a rational number"
+    )]
     NotSquare {
-        /// The parameter.
-        name: &'static str,
+        /// The slope.
+        slope: Rational,
     },
     /// A term of the perturbation is not rational in sech and tanh on the orbit.
     #[error("y^{position} y'^{velocity} leaves the ring of sech and tanh on this orbit")]

@@ -134,7 +134,7 @@ impl Saddle {
         }
         let (numerator, denominator) = (self.slope.numer(), self.slope.denom());
         if !numerator.is_perfect_square() || !denominator.is_perfect_square() {
-            return Err(MelnikovError::NotSquare { name: "slope" });
+            return Err(MelnikovError::NotSquare { slope: self.slope.clone() });
         }
         let root = Rational::from((numerator.clone().sqrt(), denominator.clone().sqrt()));
         let p = Rational::from((2, self.power - 1));

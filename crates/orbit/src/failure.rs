@@ -78,7 +78,7 @@ pub enum Failure {
     #[error("the equation is not even in x'")]
     NotReversible,
     /// The guess has no harmonic, no positive frequency or values that are not finite.
-    #[error("the guess is no oscillation")]
+    #[error("no guess was found that oscillates")]
     NoStart,
     /// No such value: a pendulum with q x(0) at 0, or at pi and beyond, where it does not swing but stands or
     /// turns over.

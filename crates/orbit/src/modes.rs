@@ -103,14 +103,22 @@ fn linear_modes(field: &Field) -> Vec<(f64, Vec<f64>)> {
             continue;
         }
         let shifted = &stiffness - DMatrix::identity(n, n) * square;
-        let Some(rows) = shifted.svd(false, true).v_t else { continue };
-        let shape: Vec<f64> = rows.row(n - 1).iter().copied().collect();
+        let found = shifted.svd(false, true);
+        let Some(rows) = found.v_t else { continue };
+        // Of several vectors of one eigenvalue that with the least of the other unknowns: the projection of x_1.
+        let least = found.singular_values[n - 1].max(1e-6 * stiffness.norm());
+        let kernel = (0..n).filter(|i| found.singular_values[*i] <= least);
+        let mut shape = vec![0.0; n];
+        for row in kernel.map(|i| rows.row(i)) {
+            shape.iter_mut().zip(row.iter()).for_each(|(sum, x)| *sum += row[0] * x);
+        }
         let size = shape.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        if shape[0].abs() > 1e-6 * size {
+        if size > 0.0 && shape[0].abs() > 1e-6 * size {
             modes.push((square.sqrt(), shape.iter().map(|x| x / shape[0]).collect()));
         }
     }
-    modes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    modes.sort_by(|a: &(f64, Vec<f64>), b| a.0.total_cmp(&b.0));
+    modes.dedup_by(|a, b| (a.0 - b.0).abs() <= 1e-6 * b.0);
     modes
 }
 

@@ -5,6 +5,7 @@ use crate::bound::{bind, missing, multiply_out, named, of_value, rest};
 use crate::in_pi::InPi;
 use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::print::Style;
 use lindstedt_equation::{Crossing, Expression, Function, Problem, Synchronous, Unknown};
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_number::Exact;
@@ -208,8 +209,8 @@ impl Linear {
         };
         let exact = |c: &InPi, term: &Expression| c.value().ok_or_else(|| irrational(term));
         let square = self.stiffness.plus(&self.delayed);
-        let stiffness = square.value().map_or_else(|| "?".into(), |v| v.to_string());
-        let no_stiffness = || Refusal::NoStiffness { value: stiffness.clone() };
+        let no_stiffness =
+            || Refusal::NoStiffness { value: square.expression().print("eps", Style::Text) };
         let alpha = square.root().filter(|_| !square.is_zero()).ok_or_else(no_stiffness)?;
         let x = Expression::DISPLACEMENT;
         let constant = |e: &Expression| InPi::of(&bind(e, values)).ok_or_else(|| irrational(e));

@@ -68,6 +68,15 @@ impl InPi {
     pub fn terms(&self) -> impl Iterator<Item = (i32, &Rational)> {
         self.0.iter().map(|(k, q)| (*k, q))
     }
+    /// As it is written.
+    pub fn expression(&self) -> Expression {
+        let power = |(k, q): (i32, &Rational)| match k {
+            0 => Expression::Number(q.clone()),
+            k => Expression::Number(q.clone()) * Expression::parameter(PI).pow(i64::from(k)),
+        };
+        let terms = self.terms().map(power);
+        Expression::Sum(terms.collect()).canonical()
+    }
     pub fn plus(&self, other: &Self) -> Self {
         let mut sum = self.clone();
         for (k, q) in &other.0 {

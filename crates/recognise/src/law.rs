@@ -1,6 +1,6 @@
 //! The friction law of an equation: T(x' - v*), with v* the speed at which it jumps or bends.
 
-use crate::bound::{PI, multiply_out};
+use crate::bound::multiply_out;
 use crate::in_pi::InPi;
 use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
@@ -67,14 +67,6 @@ fn kink(inside: &Expression) -> Option<InPi> {
         }
     }
     (!slope.is_zero()).then(|| constant.scaled(&(Rational::from(-1) / slope)))
-}
-
-impl InPi {
-    fn expression(&self) -> Expression {
-        let power = |k: i32| Expression::parameter(PI).pow(i64::from(k));
-        let terms = self.terms().map(|(k, q)| Expression::Number(q.clone()) * power(k));
-        Expression::Sum(terms.collect()).canonical()
-    }
 }
 
 /// sign(p w) = sgn(p) sign(w) and |p w| = |p||w|, everywhere inside.

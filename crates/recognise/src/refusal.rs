@@ -163,8 +163,10 @@ pub enum Refusal {
         /// Where the saddle is.
         position: String,
     },
-    /// The unperturbed equation has no stiffness.
-    #[error("the free flight needs alpha^2 > 0 in x'' + alpha^2 x, not {value}")]
+    /// The unperturbed equation has no stiffness, or one of which the root is no exact number.
+    #[error(
+        "the free flight takes alpha^2 > 0 in x'' + alpha^2 x, rational or the square of a rational multiple of pi, not {value}"
+    )]
     NoStiffness {
         /// alpha^2.
         value: String,

@@ -64,6 +64,12 @@ pub enum SimulateError {
         /// Where.
         time: f64,
     },
+    /// Numbers of doubles beyond 2^1024.
+    #[error("the motion exceeds the largest double at t = {time}")]
+    Overflow {
+        /// Where.
+        time: f64,
+    },
     /// |w|^p with p no integer and w = 0: the solution has a branch point, no Taylor series.
     #[error("branch point of switch {switch} at t = {time}: |w|^p with p no integer, w = 0")]
     BranchPoint {

@@ -338,6 +338,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             // Coefficients near the branch point overflow before it can be leapt over.
             Some(_) => self.stuck(time),
             None if self.escapes() => self.stuck(time),
+            None if self.overflows() => SimulateError::Overflow { time },
             None => SimulateError::NotFinite { time },
         })?;
         let mut h = real.double(step.min(f64::MAX));

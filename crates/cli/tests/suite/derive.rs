@@ -234,3 +234,15 @@ fn the_path_of_an_unreadable_file_is_whole() {
         "a-folder/that/does/not/exist/with/a/rather/long/path/to/it/that/is/shown/whole.toml";
     assert!(refused(&["derive", path]).contains(path));
 }
+
+/// Forces that do work conserve no energy; the squares of both amplitudes are kept all the same.
+#[test]
+fn quadratic_invariants_need_no_energy() {
+    let line = ["derive", "x'' + x + eps*x*y^2; y'' + 9*y + eps*y^3 = 0", "--order", "1"];
+    let shown = text(&line);
+    assert!(shown.contains("Q = z_1*zbar_1") && shown.contains("Q = z_2*zbar_2"), "{shown}");
+    assert!(!shown.contains("Energy"), "{shown}");
+    let found = json(&line);
+    assert_eq!(found["quadratic_invariants"].as_array().unwrap().len(), 2);
+    assert!(found["energy"].is_null());
+}

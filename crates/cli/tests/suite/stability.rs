@@ -118,6 +118,8 @@ fn other_words_for_the_impact_oscillator() {
         (equation.replace("+ x - 1", "+ x - 1 + cos(2*w*t)"), "second force"),
         (equation.replace("t - T", "t - 2*w"), "no period"),
         (equation.replace("+ x - 1", "- x"), "alpha^2 > 0"),
+        (equation.replace("+ x - 1", "+ pi*x"), "square of a rational multiple of pi, not pi ("),
+        (equation.replace("+ x - 1", "+ 4*x + pi*x"), "of pi, not 4 + pi (a rational number"),
     ];
     for (equation, words) in refusals {
         std::fs::write(&path, file(&equation, "")).unwrap();
@@ -128,6 +130,13 @@ fn other_words_for_the_impact_oscillator() {
         let output = lindstedt(&[&["stability", &path], &wrong[..]].concat());
         assert_eq!(output.status.code(), Some(2), "{wrong:?}");
     }
+    // Names are those of the file, or words.
+    std::fs::write(&path, file(equation, "").replace("3/5", "6/5")).unwrap();
+    refuses(&["stability", &path], 2, "the restitution, must lie between 0 and 1");
+    let bare = equation.replace("p sin(w t + 1)", "sin(3 t)").replace("A (x - x(t - T))", "0");
+    let wall = "[impact]\nposition = \"4/5\"\ncrossing = \"rising\"\nrestitution = \"3/5\"\n";
+    std::fs::write(&path, format!("equation = \"{bare}\"\n{wall}")).unwrap();
+    refuses(&["stability", &path, "--sweep", "P0=0..1:3"], 2, "have no parameter that can");
     // Without a loop nothing in the file says how many periods lie between impacts.
     let free = equation.replace("A (x - x(t - T))", "0");
     std::fs::write(&path, file(&free, "")).unwrap();

@@ -61,7 +61,7 @@ pub fn numbers(
 ) -> Result<Numbers, Error> {
     let task = Task::new(problem, settings)?;
     if let Some(name) = task.names.iter().find(|name| task.value(name).is_none()) {
-        return Err(Error::Unset { problem: problem.name.to_string(), name: name.clone() });
+        return Err(Error::without_value(problem, name));
     }
     if let Some(over) = task.over_rationals(observer)? {
         let found = collect(&task, &over, bits, &|q| Some(Float::with_val(bits, q)))?;

@@ -257,14 +257,14 @@ impl Serialize for SlowFlow {
         if !self.energy.is_empty() {
             let energy: Vec<_> = self.energy.iter().map(|t| monomials(self, &names, t)).collect();
             map.serialize_entry("energy", &energy)?;
-            let forms = self.quadratic_invariants().into_iter().map(|form| {
-                let terms = monomials(self, &names, &form.terms);
-                Invariant { form: terms, orders: form.orders }
-            });
-            let forms: Vec<_> = forms.collect();
-            if !forms.is_empty() {
-                map.serialize_entry("quadratic_invariants", &forms)?;
-            }
+        }
+        let forms = self.quadratic_invariants().into_iter().map(|form| {
+            let terms = monomials(self, &names, &form.terms);
+            Invariant { form: terms, orders: form.orders }
+        });
+        let forms: Vec<_> = forms.collect();
+        if !forms.is_empty() {
+            map.serialize_entry("quadratic_invariants", &forms)?;
         }
         if let Some(Polar { slow, amplitude, phase }) = self.polar() {
             map.serialize_entry("slow_phase", &slow)?;

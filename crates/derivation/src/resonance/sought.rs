@@ -29,7 +29,7 @@ use lindstedt_number::common_measure;
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
 use rug::Rational;
-use start::{Complex, Search, Start, Starts, may_choose, power};
+use start::{Complex, Search, Start, Starts, is_linear, may_choose, power};
 
 /// A parameter as a series, for every motion that stays periodic.
 ///
@@ -71,7 +71,7 @@ pub struct Sought {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct SoughtBranch {
-    /// How x begins, c cos(nu t) + s sin(nu t) with c^2 + s^2 = 1.
+    /// How x begins, c cos(nu t) + s sin(nu t) with c^2 + s^2 = 1; of a linear equation any multiple of it.
     pub start: [Rational; 2],
     /// The time of the equation at which that of the motion is 0.
     pub origin: String,
@@ -178,8 +178,7 @@ fn sought_at(
     refuse_delays(&equations, Names(problem))?;
     let system = System::of(&equations, &given, &cards, Names(problem), Detuned::Not)?;
     if let Some(name) = system.open_frequency() {
-        let problem = problem.name.to_string();
-        return Err(Error::Unset { problem, name: name.clone() });
+        return Err(Error::without_value(problem, name));
     }
     if !system.is_exact() || system.unit.is_some() {
         let squares: Vec<String> = system.plain_squares().iter().map(ToString::to_string).collect();
@@ -322,6 +321,7 @@ impl Task<'_> {
         };
         let mut search = Search {
             flow: &mut flow,
+            linear: self.system.equations.iter().all(is_linear),
             symbols: (names.len(), place),
             amplitude,
             multiples: [harmonic, self.step],

@@ -364,7 +364,7 @@ fn parameters_outside_their_domain_are_named() {
     ));
     assert!(matches!(
         refused(Parameters { restitution: 1.5, ..base() }),
-        ImpactError::OutOfRange { name: "R_r", .. }
+        ImpactError::OutOfRange { name: "R_r, the restitution,", .. }
     ));
     assert!(matches!(
         refused(Parameters { damping: -0.1, ..base() }),

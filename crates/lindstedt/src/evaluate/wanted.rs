@@ -139,7 +139,7 @@ impl Oscillator {
 
     fn unproved(&self, failure: Failure) -> Error {
         match failure {
-            Failure::NoValue(name) => self.unset(name),
+            Failure::NoValue(name) => self.unset(&name),
             other => other.into(),
         }
     }

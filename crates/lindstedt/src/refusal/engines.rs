@@ -328,6 +328,11 @@ impl Refusal for SimulateError {
             Self::MissingParameter { .. } => {
                 (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10")
             }
+            Self::Overflow { .. } => (
+                NoAnswer,
+                "no-trajectory",
+                "--digits in the place of --f64 has larger numbers; or a shorter time",
+            ),
             Self::BadRestitution { .. } => (NoAnswer, "outside-domain", "see `lindstedt problems`"),
             _ => (NoAnswer, "no-trajectory", "another start, or a shorter time"),
         };
@@ -394,6 +399,11 @@ impl Refusal for lindstedt_recognise::Refusal {
             Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
                 (NoAnswer, "no-method", FIRST_ORDER)
             }
+            Refusal::NoStiffness { .. } => (
+                NoAnswer,
+                "no-method",
+                "a rational number near it is taken; `lindstedt simulate` takes it as it is",
+            ),
             Refusal::NoPeriod | Refusal::Tangent | Refusal::NoSpring => {
                 (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
             }

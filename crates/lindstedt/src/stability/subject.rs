@@ -184,7 +184,10 @@ impl<'a> Subject<'a> {
             false => "",
         };
         let message = format!("{name:?} cannot be swept{why}");
-        let hint = format!("known: {}", known.join(", "));
+        let hint = match &known[..] {
+            [] => "the equation and the wall have no parameter that can".to_owned(),
+            names => format!("known: {}", names.join(", ")),
+        };
         Err(Refused::usage("unknown-parameter", message, hint).into())
     }
 

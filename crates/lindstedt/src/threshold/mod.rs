@@ -247,7 +247,9 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<HomoclinicThreshold>, Error> {
         let start = Instant::now();
-        let subject = Subject::new(self, work)?;
+        let axes = question.sweep.iter().chain(&question.zeros);
+        let (case, mut remarks) = self.at_beginnings(axes);
+        let subject = Subject::new(&case, work)?;
         let swept = subject.swept(&question.sweep)?;
         let zeros = question.zeros.as_ref().map(|ends| subject.range(ends)).transpose()?;
         let mut value = orbits::measure(&subject).map_err(|error| stopped(error, work))?;
@@ -269,7 +271,7 @@ impl Oscillator {
         }
         value.sweep = sweep::compute(&subject, swept, question.part)?;
         value.remarks = subject.remarks(&value);
-        let mut remarks = self.remarks().to_vec();
+        remarks.extend_from_slice(self.remarks());
         let mut standing = Standing::Complete;
         if let Some(grid) = value.sweep.as_ref().map(|sweep| &sweep.grid)
             && work.stop.asked()
@@ -292,7 +294,7 @@ impl Oscillator {
             Class::Certified => "certified",
             Class::Estimated => "estimated",
         };
-        let header = self.header(self.all_values(), None, tier, start);
+        let header = case.header(case.all_values(), None, tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
 }

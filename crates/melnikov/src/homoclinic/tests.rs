@@ -149,7 +149,7 @@ fn what_has_no_such_orbit_is_refused() {
     let moves = MelnikovError::LeavesRing { position: 0, velocity: 0 };
     assert_eq!(moved.homoclinic(1, &mut |_| true), Err(moves));
     let root = saddle(2, 2, 1, friction()).homoclinic(1, &mut |_| true);
-    assert_eq!(root, Err(MelnikovError::NotSquare { name: "slope" }));
+    assert_eq!(root, Err(MelnikovError::NotSquare { slope: 2.into() }));
     let centre = saddle(-1, 3, 1, friction()).homoclinic(1, &mut |_| true);
     assert_eq!(centre, Err(MelnikovError::NotPositive { name: "slope" }));
     let open = saddle(1, 3, 1, friction()).homoclinic(1, &mut |_| true);

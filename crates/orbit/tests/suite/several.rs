@@ -104,6 +104,10 @@ fn curved_normal_modes_close() {
         2 * x(1) + q(1, 4) * (x(1) - x(0)),
     ];
     assert_eq!(orbits(&rests, &Kind::InitialAmplitude(1.into())).len(), 2);
+    // Two equal Duffing oscillators apart: the second at rest.
+    let rests = [x(0) + x(0).pow(3), x(1) + x(1).pow(3)];
+    let proofs = orbits(&rests, &Kind::InitialAmplitude((1, 2).into()));
+    assert_eq!(proofs.len(), 1);
     // x_1'' + x_2''/2 + x_1 = 0, x_1''/2 + x_2'' + 2 x_2 = 0, solved for the accelerations.
     let [a, b] = [0, 1].map(|k| Expression::unknown(k, 2));
     let coupled = [a.clone() + q(1, 2) * b.clone() + x(0), q(1, 2) * a + b + 2 * x(1)];

@@ -292,8 +292,8 @@ impl Board<'_> {
         page
     }
 
-    /// The energy, where there is one.
-    fn energy(&self, mut page: Document) -> Document {
+    /// The energy and the quadratic invariants, where there are any.
+    fn conserved(&self, mut page: Document) -> Document {
         let orders = &self.0.energy;
         for (n, terms) in orders.iter().enumerate() {
             page = page.formula(both(|style| {
@@ -303,9 +303,6 @@ impl Board<'_> {
                     self.polynomial(terms, style)
                 )
             }));
-        }
-        if orders.is_empty() {
-            return page;
         }
         for form in self.0.quadratic_invariants() {
             page =
@@ -317,6 +314,9 @@ impl Board<'_> {
             page = page
                 .words(format!("Quadratic invariant: Q is conserved by f_1{last}, identically."));
         }
+        if orders.is_empty() {
+            return page;
+        }
         page.words(format!(
             "Energy: H_0 + H_1*{} + ... is conserved by the flow, identically at orders 0 to {}.",
             self.0.problem.small,
@@ -325,7 +325,7 @@ impl Board<'_> {
     }
 
     fn checks(&self, page: Document) -> Document {
-        let mut page = self.energy(page);
+        let mut page = self.conserved(page);
         if let Some(near) = self.0.nearest() {
             let unknown = &self.0.coordinates()[near.unknown];
             let (size, order) = (self.0.size(&near.size), near.order);

@@ -27,6 +27,12 @@ impl<R: Real> Integrator<'_, R> {
         above(0, 10.0) && largest > self.log2_start + 20.0 || above(1, 20.0)
     }
 
+    /// Whether x or x' is near 2^1024, where doubles end: no pole, however large.
+    pub(super) fn overflows(&self) -> bool {
+        let real = &self.system.real;
+        real.bits() <= 53 && self.state.iter().any(|x| real.log2(x) > 900.0)
+    }
+
     /// A pole of x(t) that steps do not come near to, because the motion is stiff there: after
     /// x = C (t* - t)^-p, |x/x'| = (t* - t)/p, while |x| grows by a factor 2^g the time |x/x'|
     /// shrinks by 2^s with g = p s. Said where s is four or more with p up to 10 (a double
@@ -70,9 +76,8 @@ impl<R: Real> Integrator<'_, R> {
                 // logarithm, x' alone is unbounded.
                 let x = self.state.first();
                 let displacement = x.map_or(f64::NAN, |x| real.to_f64(x));
-                // Doubles end at 2^1024: no pole, however large.
-                if self.system.real.bits() <= 53 && x.is_some_and(|x| real.log2(x) > 900.0) {
-                    return SimulateError::NotFinite { time };
+                if self.overflows() {
+                    return SimulateError::Overflow { time };
                 }
                 if x.is_some_and(|x| real.log2(x) > self.log2_start + 10.0) {
                     SimulateError::Escape { time, displacement }

@@ -161,6 +161,16 @@ fn keys_of_the_file_hold_for_sweeps() {
     for arguments in [["--sweep", "omega=1..2:3"], ["--zeros", "omega=1..2"]] {
         refuses(&[&["threshold", &file.0], &arguments[..]].concat(), 2, "fixed");
     }
+    // A range gives a parameter its values, where it has none of its own.
+    let file = File::with_text("open", &body.replace("{ value = \"1/5\" }", "{}"));
+    let [curve, zeros] =
+        ["--sweep", "--zeros"].map(|range| [range, "delta=-1/10..3/10"].map(String::from));
+    let points = format!("{}:3", curve[1]);
+    let swept = file.json(&[&curve[0], &points]);
+    let own = ["--set", "delta=1"];
+    assert_eq!(swept["curve"], file.json(&[&own[..], &[&curve[0], &points]].concat())["curve"]);
+    let found = file.json(&zeros.each_ref().map(String::as_str));
+    assert_eq!(found["zeros"].as_array().unwrap().len(), 1);
 }
 
 /// A frequency through zero: a cosine has the same threshold at -omega, and none at 0, with the reason.

@@ -9,7 +9,7 @@ use super::super::forces::harmonic;
 use super::super::{ResonanceError, Terms};
 use crate::error::DerivationError as Error;
 use lindstedt_equation::Expression;
-use lindstedt_equation::monomials::expand;
+use lindstedt_equation::monomials::{Monomial, expand};
 use lindstedt_expand::ExpandError;
 use rug::ops::Pow;
 use rug::{Integer, Rational};
@@ -80,16 +80,24 @@ impl Start {
         both.map(|direction| Self { direction, turn: real(1) }).into()
     }
 
-    /// With v^k = u, where nu and Omega are these multiples of one frequency.
-    fn of(u: &Complex, k: i32, [nu, step]: [i32; 2]) -> Option<Self> {
+    /// With v^k = u, where nu and Omega are these multiples of one frequency; of a linear equation, where k = 2, a multiple of
+    /// v is 1 + u, since (1 + u)^2 = u |1 + u|^2.
+    fn of(u: &Complex, k: i32, [nu, step]: [i32; 2], linear: bool) -> Option<Self> {
         if let Some(direction) = root(u, k) {
             return Some(Self { direction, turn: real(1) });
         }
         // turn = v^(-step/nu).
-        let product = nu.checked_mul(k)?;
-        let common = Integer::from(product).gcd(&Integer::from(step)).to_i32()?;
-        let turn = root(&power(u, -(step / common)), product / common)?;
-        Some(Self { direction: real(1), turn })
+        let turned = || {
+            let product = nu.checked_mul(k)?;
+            let common = Integer::from(product).gcd(&Integer::from(step)).to_i32()?;
+            let turn = root(&power(u, -(step / common)), product / common)?;
+            Some(Self { direction: real(1), turn })
+        };
+        let multiple = || {
+            let direction = [Rational::from(&u[0] + 1u32), u[1].clone()];
+            (linear && k == 2).then(|| Self { direction, turn: real(1) })
+        };
+        turned().or_else(multiple)
     }
 }
 
@@ -129,6 +137,16 @@ pub(super) fn may_choose(equation: &Expression, order: usize, [nu, step]: [i32; 
     leaves.clone() + 1u32 >= step && force * order + leaves * first >= nu
 }
 
+/// Whether every term has one factor of x, x' or x'' and is none of a force.
+pub(super) fn is_linear(equation: &Expression) -> bool {
+    let Some(all) = expand(equation) else { return false };
+    let others = |m: &Monomial| -> u32 {
+        let unknown = |name: &String| matches!(all.atoms.get(name), Some(Expression::Unknown(_)));
+        m.atoms.iter().filter(|(name, _)| unknown(name)).map(|(_, n)| n).sum()
+    };
+    all.terms.keys().all(|m| m.x + m.velocity + others(m) == 1)
+}
+
 /// A polynomial: the exponents of v and of the symbols.
 type Polynomial = BTreeMap<Vec<i32>, Complex>;
 
@@ -166,6 +184,8 @@ pub(super) struct Search<'a> {
     pub flow: &'a mut dyn FnMut(usize) -> Result<Vec<Terms>, Error>,
     /// The number of symbols, and the place of the parameter among them.
     pub symbols: (usize, usize),
+    /// Whether a multiple of a motion is one.
+    pub linear: bool,
     /// A.
     pub amplitude: &'a Rational,
     /// nu and Omega in multiples of one frequency.
@@ -268,7 +288,8 @@ impl Search<'_> {
         // The cosine first.
         roots.sort_by(|a, b| b.cmp(a));
         roots.dedup();
-        let found: Option<_> = roots.iter().map(|u| Start::of(u, k, self.multiples)).collect();
+        let found: Option<_> =
+            roots.iter().map(|u| Start::of(u, k, self.multiples, self.linear)).collect();
         found.ok_or_else(|| mixture(&roots.iter().map(angle).collect::<Vec<_>>()))
     }
 }
