@@ -74,7 +74,8 @@ pub(crate) fn points(
         return Err(HopfError::Still { unknown: unknown.to_owned() });
     }
     // Where L(i omega) is real for all omega, its zeros are curves in the plane of (alpha, omega), which no box isolates.
-    if equation.linear().all(|(_, factor)| factor.derivative.is_multiple_of(2) && factor.delay == 0) {
+    if equation.linear().all(|(_, factor)| factor.derivative.is_multiple_of(2) && factor.delay == 0)
+    {
         return Err(HopfError::Even);
     }
     let ring = BallRing { balls: Balls::new(COARSE) };
