@@ -137,6 +137,10 @@ fn other_words_for_the_impact_oscillator() {
     let wall = "[impact]\nposition = \"4/5\"\ncrossing = \"rising\"\nrestitution = \"3/5\"\n";
     std::fs::write(&path, format!("equation = \"{bare}\"\n{wall}")).unwrap();
     refuses(&["stability", &path, "--sweep", "P0=0..1:3"], 2, "have no parameter that can");
+    // Without a small parameter none is missed.
+    let bare = bare.replace("+ eps (0 - x'/5)", "- x'/5").replace("+ x - 1", "+ pi*x");
+    std::fs::write(&path, format!("equation = \"{bare}\"\n{wall}")).unwrap();
+    refuses(&["stability", &path], 3, "of pi, not pi (a rational number");
     // Without a loop nothing in the file says how many periods lie between impacts.
     let free = equation.replace("A (x - x(t - T))", "0");
     std::fs::write(&path, file(&free, "")).unwrap();
