@@ -77,10 +77,13 @@ fn product<A: PhaseAlgebra>(
     factors.fold(one, |product, f| product.mul(algebra, f, last)).coefficients
 }
 
+/// A number times a small factor.
+type Scaled<'a> = (i64, Cow<'a, Integer>);
+
 /// Numerators of the cosines and sines over one denominator, each times a small factor: those of a long expansion are not copied.
 struct Whole<'a> {
     denominator: Cow<'a, Integer>,
-    harmonics: [Vec<(i64, Cow<'a, Integer>)>; 2],
+    harmonics: [Vec<Scaled<'a>>; 2],
 }
 
 /// A common multiple: few are greater than those before, and a division costs less than a greatest common divisor.
@@ -119,11 +122,10 @@ impl<'a> Whole<'a> {
     /// 2 <f g> times both denominators: <1> = 2 <cos^2>.
     fn twice_mean(&self, other: &Self) -> Integer {
         let mut sum = Integer::new();
-        let mut add =
-            |((m, f), (n, g)): (&(i64, Cow<'_, Integer>), &(i64, Cow<'_, Integer>))| match (m, n) {
-                (1, 1) => sum += &**f * &**g,
-                _ => sum += Integer::from(&**f * &**g) * m * n,
-            };
+        let mut add = |((m, f), (n, g)): (&Scaled<'_>, &Scaled<'_>)| match (m, n) {
+            (1, 1) => sum += &**f * &**g,
+            _ => sum += Integer::from(&**f * &**g) * m * n,
+        };
         for (f, g) in self.harmonics.iter().zip(&other.harmonics) {
             f.iter().zip(g).for_each(&mut add);
         }

@@ -110,6 +110,25 @@ fn is_force(term: &str) -> bool {
     term == "t" || wave && term.ends_with("t)")
 }
 
+/// Of what is too long.
+fn of_size(error: &ResonanceError) -> Option<(Kind, &'static str, &'static str)> {
+    Some(match error {
+        ResonanceError::TooManySymbols { symbols: 0, .. } => (
+            NoAnswer,
+            "too-many-symbols",
+            "`lindstedt simulate` takes one unknown, `derive --mode` one mode of several",
+        ),
+        ResonanceError::TooManySymbols { .. } => {
+            (NoAnswer, "too-many-symbols", "--set some of them")
+        }
+        ResonanceError::RatesApart { .. } => (Undecided, "too-large", FRACTION),
+        ResonanceError::TooHigh { .. } | ResonanceError::TooManyTerms { .. } => {
+            (Undecided, "too-large", "lower --order")
+        }
+        _ => return None,
+    })
+}
+
 /// Of a parameter that is sought.
 fn of_sought(error: &ResonanceError) -> Option<(Kind, &'static str, &'static str)> {
     Some(match error {
@@ -199,18 +218,9 @@ impl Refusal for ResonanceError {
             Self::NoOscillation { .. } | Self::Flutter => (NoAnswer, "no-expansion", ""),
             Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),
             Self::NearMiss { .. } => (NoAnswer, "near-miss", AT_RESONANCE),
-            Self::TooManySymbols { symbols: 0, .. } => (
-                NoAnswer,
-                "too-many-symbols",
-                "`lindstedt simulate` takes one unknown, `derive --mode` one mode of several",
-            ),
-            Self::TooManySymbols { .. } => (NoAnswer, "too-many-symbols", "--set some of them"),
-            Self::RatesApart { .. } => (Undecided, "too-large", FRACTION),
-            Self::TooHigh { .. } | Self::TooManyTerms { .. } => {
-                (Undecided, "too-large", "lower --order")
-            }
             error => {
-                of_sought(error).or_else(|| of_mode(error)).unwrap_or((Undecided, "undecided", ""))
+                let found = of_sought(error).or_else(|| of_mode(error)).or_else(|| of_size(error));
+                found.unwrap_or((Undecided, "undecided", ""))
             }
         };
         (kind, code, hint.to_owned())

@@ -203,7 +203,7 @@ impl<'a> Subject<'a> {
             }
             // A detuning that follows from the frequency and the small parameter, which has no value.
             Some((name, _)) if beside.is_some_and(|it| it.symbol == *name) => {
-                Err(self.oscillator.unset(&*self.oscillator.problem().small))
+                Err(self.oscillator.unset(&self.oscillator.problem().small))
             }
             Some((name, _)) if name == FAMILY => Err(no_amplitude("has no value")),
             Some((name, _)) => Err(self.oscillator.unset(name)),
@@ -334,7 +334,7 @@ impl<'a> Subject<'a> {
     pub(super) fn samples(&self, axis: &Axis) -> Result<Vec<Exact>, Error> {
         let values = self.chosen(axis).into_iter();
         let Some(factor) = &self.factor else { return Ok(values.collect()) };
-        let unset = || self.oscillator.unset(&*self.oscillator.problem().small);
+        let unset = || self.oscillator.unset(&self.oscillator.problem().small);
         let small = self.small.as_ref().ok_or_else(unset)?;
         let detuning = |value: Exact| {
             let rate = Rational::from(value.as_rational()? / factor);

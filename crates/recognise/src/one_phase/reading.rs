@@ -10,6 +10,18 @@ use lindstedt_number::Exact;
 use rug::Rational;
 use std::collections::BTreeMap;
 
+/// Why a term is no function of x and x' alone.
+fn unfit(term: &Expression) -> Option<Why> {
+    let holds = |wanted: &dyn Fn(&Expression) -> bool| term.find(wanted).is_some();
+    if holds(&|e| matches!(e, Expression::Time)) {
+        return Some(Why::Forced);
+    }
+    if holds(&Expression::is_delayed) {
+        return Some(Why::Late);
+    }
+    holds(&|e| matches!(e, Expression::Formal(..))).then_some(Why::Formal)
+}
+
 impl OnePhase {
     /// Reads the equation of a problem with the values of its parameters; the small one needs none.
     ///
@@ -27,15 +39,8 @@ impl OnePhase {
         for (m, q) in &all.terms {
             let term = || all.tree(m, q);
             let refused = |why| Refusal::Term { term: Box::new(term()), why };
-            let holds = |wanted: &dyn Fn(&Expression) -> bool| term().find(wanted).is_some();
-            if holds(&|e| matches!(e, Expression::Time)) {
-                return Err(refused(Why::Forced));
-            }
-            if holds(&Expression::is_delayed) {
-                return Err(refused(Why::Late));
-            }
-            if holds(&|e| matches!(e, Expression::Formal(..))) {
-                return Err(refused(Why::Formal));
+            if let Some(why) = unfit(&term()) {
+                return Err(refused(why));
             }
             match m.order {
                 0 => {
