@@ -200,6 +200,19 @@ mod tests {
         }
     }
 
+    /// 3^10 and 5^6 are the probes: a power as long as that, and one factor more or less in either number.
+    #[test]
+    fn powers_beside_their_probes() {
+        for (p, probe) in [(3, 10), (5, 6)] {
+            for (own, other) in (probe - 1..=probe + 2).flat_map(|k| [(k, probe), (k, probe + 1)]) {
+                let [number, c] = [own, other].map(|k| Integer::from(Integer::u_pow_u(p, k)));
+                let lowest = Denominator::new(number.clone(), 5).lowest(c.clone());
+                let expected = Rational::from((c, number)).into_numer_denom();
+                assert_eq!(lowest, Some(expected), "{p}^{other}/{p}^{own}");
+            }
+        }
+    }
+
     #[test]
     fn what_all_have_in_common_is_divided_out() {
         let number = Integer::from(36 * 1_000_003);
