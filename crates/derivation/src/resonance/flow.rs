@@ -71,6 +71,20 @@ pub(super) fn compiled<S: Scalars>(
     let equations = compiled_form(system);
     compile_system(algebra, &equations, binding, order).map_err(|error| {
         let ExpandError::UnsupportedTerm { term } = &error else { return error };
+        // Where unknowns are modes what is said is a term of the user's that no polynomial is.
+        let unknown = |e: &Expression| matches!(e, Expression::Unknown(_));
+        let curved = |e: &&Expression| match e {
+            Expression::Power(z, n) => {
+                let natural = n.as_number().is_some_and(|n| n.is_integer() && n >= 0);
+                !natural && z.find(&unknown).is_some()
+            }
+            Expression::Function(_, z) => z.find(&unknown).is_some(),
+            _ => false,
+        };
+        let own = || names.0.equations().flat_map(Expression::nodes).find(curved);
+        if let Some(own) = system.shapes.is_some().then(own).flatten() {
+            return ExpandError::UnsupportedTerm { term: names.shown(own) };
+        }
         let refused = |e: &&Expression| e.print("eps", Style::Text) == *term;
         let Some(found) = equations.iter().flat_map(Expression::nodes).find(refused) else {
             return error;
