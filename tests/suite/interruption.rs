@@ -10,7 +10,8 @@ use lindstedt::unstable::series::resummation::{
 };
 use lindstedt::{
     Derivation, DerivationError as Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal,
-    Route, Work, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
+    Respond, Route, Work, unstable::derivation::Settings, unstable::derivation::derive,
+    unstable::problems,
 };
 use rug::Float;
 use std::sync::Arc;
@@ -289,4 +290,28 @@ fn evaluations() {
             assert!(stopped, "{name} {i} of {total}");
         }
     }
+}
+
+/// Whether normal modes form families is known last: a question about them that is broken off before never says that they
+/// form none.
+#[test]
+fn families_of_normal_modes() {
+    let spring =
+        Oscillator::file(include_str!("../../docs/examples/pendulum-spring.toml")).unwrap();
+    let spring = spring.set("eps", "1/10").unwrap().set("amplitude", "1/2").unwrap();
+    let run = |stop| {
+        let question = Respond { order: Some(1), ..Respond::default() };
+        spring.respond(&question, &Work { stop, ..Work::default() })
+    };
+    let (stop, asked) = after(u64::MAX);
+    assert!(run(stop).is_ok());
+    let total = asked.load(Ordering::SeqCst);
+    let derived = (0..total).take_while(|&limit| match run(after(limit).0) {
+        Ok(_) => false,
+        Err(error) => {
+            assert_eq!(error.kind(), Kind::Stopped, "{limit}: {error}");
+            true
+        }
+    });
+    assert!(derived.count() > 5, "{total} questions");
 }

@@ -7,13 +7,18 @@ use crate::{DerivationError, Error, Exact, Kind, Oscillator, Refusal, SlowFlow, 
 use lindstedt_derivation::resonance::ResonanceError;
 use lindstedt_evaluation::rotating::NoFrame;
 
-/// A slow flow that was stopped at a lower order is that of other states.
-pub(super) fn whole(slow: SlowFlow, order: usize) -> Result<SlowFlow, Error> {
-    if slow.order < order {
-        let message = format!("stopped at order {} of the slow flow of order {order}", slow.order);
-        return Err(Refused::stopped(message, "raise --limit-seconds or lower --order").into());
-    }
-    Ok(slow)
+/// A slow flow that was stopped at a lower order is that of other states; one that was stopped before the energy was
+/// looked for, which comes last, may have families of states.
+pub(super) fn whole(slow: SlowFlow, order: usize, work: &Work) -> Result<SlowFlow, Error> {
+    let sought = slow.system.forces.is_empty() && slow.energy.is_empty();
+    let message = if slow.order < order {
+        format!("stopped at order {} of the slow flow of order {order}", slow.order)
+    } else if sought && work.stop.asked() {
+        "stopped before it was known whether the slow flow conserves an energy".to_owned()
+    } else {
+        return Ok(slow);
+    };
+    Err(Refused::stopped(message, "raise --limit-seconds or lower --order").into())
 }
 
 /// Whether an error says that this name has no value.

@@ -116,7 +116,7 @@ impl<'a> Subject<'a> {
         let name = |axis: &Option<Axis>| axis.as_ref().map(|axis| axis.name.clone());
         let mut swept = [name(&question.sweep), name(&question.second)];
         let case = with_values(oscillator, &swept);
-        let mut slow = resonant(&case, order, work).and_then(|slow| whole(slow, order));
+        let mut slow = resonant(&case, order, work).and_then(|slow| whole(slow, order, work));
         let mut factor = None;
         if let Some(axis) = &question.sweep
             && axis.name != small
@@ -127,7 +127,7 @@ impl<'a> Subject<'a> {
             if let Some(found) = forcing_frequency(&case, axis, order, work)? {
                 let Varying { slow: own, factor: ratio, symbol } = found;
                 (factor, swept[0]) = (Some(ratio), Some(symbol));
-                slow = whole(own, order);
+                slow = whole(own, order, work);
             } else if slow.as_ref().is_ok_and(|slow| is_unit(slow, name)) {
                 return Err(moving_frequency(name));
             } else if let Ok(slow) = &slow {
