@@ -144,8 +144,8 @@ impl Limits {
     }
 }
 
-/// The resident memory and the address space of the process, in bytes; zero where nobody knows. Asked every few
-/// milliseconds, of the file that costs the kernel least.
+/// The resident memory without the pages of files (the program's own code), and the address space of the process, in
+/// bytes; zero where nobody knows. Asked every few milliseconds, of the file that costs the kernel least.
 fn used() -> (u64, u64) {
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
     #[cfg(unix)]
@@ -155,7 +155,8 @@ fn used() -> (u64, u64) {
     let mut words = pages.split_whitespace().map_while(|word| word.parse::<u64>().ok());
     let mut next = || words.next().unwrap_or(0).saturating_mul(page);
     let space = next();
-    (next(), space)
+    let resident = next();
+    (resident.saturating_sub(next()), space)
 }
 
 /// The processor's seconds that the process took; nothing but on Linux. The kernel counts them in hundredths.

@@ -112,7 +112,7 @@ fn times(filter: Option<&str>) -> Outcome<Rows> {
 /// Every test alone, the cheapest first, and the sum. What tests share is counted for each.
 fn tests(filter: &str) -> Outcome<()> {
     let mut build = Command::new(env!("CARGO"));
-    build.args(["test", "--release", "--workspace", "--no-run", "--message-format", "json"]);
+    build.args(["test", "--workspace", "--no-run", "--message-format", "json"]);
     let output = build.current_dir(root()).stderr(Stdio::inherit()).output()?;
     let mut rows = Rows::new();
     for (program, folder) in budget::executables(&String::from_utf8(output.stdout)?) {

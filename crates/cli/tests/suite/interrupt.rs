@@ -178,7 +178,7 @@ fn peak(command: &mut Command) -> (u64, Option<i32>) {
     loop {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id()));
         let status = status.unwrap_or_default();
-        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let line = status.lines().find_map(|line| line.strip_prefix("RssAnon:"));
         let size = line.and_then(|text| text.trim_end_matches("kB").trim().parse().ok());
         most = size.unwrap_or(0u64).max(most);
         if let Some(status) = child.try_wait().unwrap() {

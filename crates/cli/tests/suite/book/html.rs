@@ -89,7 +89,7 @@ fn without_code(html: &str) -> String {
 #[test]
 fn every_page_becomes_html() -> Outcome {
     let settings = std::fs::read_to_string(root().join("docs/book.toml"))?;
-    assert!(settings.contains("release/book-mathematics\"") && settings.contains("src = \"src\""));
+    assert!(settings.contains("debug/book-mathematics\"") && settings.contains("src = \"src\""));
     let (paths, pages): (Vec<_>, Vec<_>) = chapters()?.into_iter().unzip();
     let pages = preprocessed(&pages)?;
     let mut formulas = 0;

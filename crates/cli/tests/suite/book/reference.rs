@@ -105,7 +105,7 @@ fn the_page_of_options_is_current() -> Outcome {
         std::fs::write(&path, &page)?;
     }
     let found = std::fs::read_to_string(&path)?;
-    assert!(found == page, "UPDATE_REFERENCE=1 cargo test --release -p lindstedt-cli book::");
+    assert!(found == page, "UPDATE_REFERENCE=1 cargo test -p lindstedt-cli book::");
     Ok(())
 }
 
