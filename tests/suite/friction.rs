@@ -39,7 +39,7 @@ fn coulomb_ends_at_order_one() {
     let found = averaged("x'' + x + eps*sign(x') = 0", 10);
     assert_eq!(shown(&found.amplitude_rate[1]), [(0, "-2*pi^(-1)".to_owned())]);
     assert!(found.amplitude_rate[2..].iter().chain(&found.phase_rate[1..]).all(Vec::is_empty));
-    assert!(found.solution[2..].iter().all(|[text, _]| text == "0"));
+    assert!(found.solution[2..].iter().all(|u| u.text() == "0"));
 }
 
 /// f = mu x' - nu x'|x'|: A_1 = mu a/2 - 4 nu omega a^2/(3 pi); the cubic force 3/8 k a^2/omega; sign(3 x') is

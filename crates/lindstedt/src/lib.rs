@@ -26,7 +26,8 @@ mod answer;
 /// What [`Oscillator::average`] answers with.
 pub mod averaging {
     pub use lindstedt_derivation::averaging::{
-        Algebraic, Averaging, Coefficient, Cycle, Cycles, RateTerm, SingleCycle, print_series,
+        Algebraic, Averaging, Coefficient, Cycle, Cycles, Formula, RateTerm, SingleCycle,
+        print_series,
     };
 }
 pub mod catalogue;

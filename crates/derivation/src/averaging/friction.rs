@@ -139,15 +139,17 @@ impl HalfTurnProblem {
                 .map(term)
                 .collect::<Result<_, Error>>()?;
         }
-        let print =
-            |u: &HalfTurn| [Style::Text, Style::Latex].map(|style| u.print(&self.names, style));
+        let printed = |u: &HalfTurn| {
+            let (u, names) = (u.clone(), self.names.clone());
+            Formula::new(move |style| u.print(&names, style))
+        };
         Ok(Averaging {
             problem: problem.clone(),
             order: found.solution.len() - 1,
             checked_orders,
             amplitude_rate: rates(&found.amplitude_rate)?,
             phase_rate,
-            solution: found.solution.iter().map(print).collect(),
+            solution: found.solution.iter().map(printed).collect(),
             terms: found.solution.iter().map(|u| u.terms().count()).collect(),
             symbols: self.names.clone(),
             exact: true,

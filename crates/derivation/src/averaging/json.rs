@@ -1,6 +1,6 @@
 //! The plain form of an averaged problem.
 
-use super::{Averaging, Coefficient, RateTerm};
+use super::{Averaging, Coefficient, Formula, RateTerm};
 use lindstedt_equation::Condition;
 use lindstedt_impact::Radius;
 use lindstedt_number::{Number, Object, Status};
@@ -93,7 +93,7 @@ impl Serialize for Averaging {
             frequency: linear.then(|| numbers(b)),
         };
         map.serialize_entry("series", &series)?;
-        let solution: Vec<&String> = self.solution.iter().map(|[text, _]| text).collect();
+        let solution: Vec<&str> = self.solution.iter().map(Formula::text).collect();
         map.serialize_entry("solution", &solution)?;
         map.serialize_entry("terms", &self.terms)?;
         let residual = Residual {

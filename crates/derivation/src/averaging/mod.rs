@@ -156,8 +156,8 @@ pub struct Averaging {
     pub amplitude_rate: Vec<Vec<RateTerm>>,
     /// B_n; the one of order zero is omega_0.
     pub phase_rate: Vec<Vec<RateTerm>>,
-    /// u_0 = a cos psi + the forced response, u_1, ... as text and as LaTeX.
-    pub solution: Vec<[String; 2]>,
+    /// u_0 = a cos psi + the forced response, u_1, ...
+    pub solution: Vec<Formula>,
     /// Terms of u_n.
     pub terms: Vec<usize>,
     /// The parameters without a value, which the formulas keep.

@@ -16,7 +16,7 @@ use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
-use lindstedt_coeff::print::{Print, Style};
+use lindstedt_coeff::print::Print;
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::resonance::{check_flow, linear_part, resonant};
 use lindstedt_expand::{Binding, Equation, Excitation, ExpandError, compile_system};
@@ -79,27 +79,10 @@ const MOST_BITS: u32 = 1 << 18;
 
 /// The result over K.
 pub(super) struct Over<K: RationalAlgebra> {
+    ring: K,
     pub(super) frequency: K::Element,
     pub(super) expansion: AveragedExpansion<K::Element>,
     checked_orders: usize,
-    solution: Vec<[String; 2]>,
-    terms: Vec<usize>,
-}
-
-impl<K: RationalAlgebra + Print> Over<K> {
-    fn new(
-        ring: K,
-        frequency: K::Element,
-        expansion: AveragedExpansion<K::Element>,
-        checked_orders: usize,
-    ) -> Self {
-        let terms = expansion.solution.iter().map(Polar::terms).collect();
-        let constants = AmplitudePolynomials::new(ring);
-        let print =
-            |x: &Polar<_>| [Style::Text, Style::Latex].map(|style| x.print(&constants, style));
-        let solution = expansion.solution.iter().map(print).collect();
-        Self { frequency, expansion, checked_orders, solution, terms }
-    }
 }
 
 impl<'a> Task<'a> {
@@ -253,7 +236,7 @@ impl<'a> Task<'a> {
         let graph = self.compiled(&ring, &algebra, values)?;
         let (expansion, checked_orders) =
             self.expanded(&algebra, &graph, &|c| algebra.parts(c), observer)?;
-        Ok(Over::new(ring, frequency, expansion, checked_orders))
+        Ok(Over { ring, frequency, expansion, checked_orders })
     }
 
     /// The expansion, its constants read as numbers, and how many orders were checked.
@@ -314,7 +297,7 @@ impl<'a> Task<'a> {
         }
     }
 
-    fn finish<K: RationalAlgebra>(
+    fn finish<K: RationalAlgebra + Print + Send + Sync + 'static>(
         &self,
         over: Over<K>,
         exact: bool,
@@ -332,14 +315,19 @@ impl<'a> Task<'a> {
         if let Some(first) = phase_rate.first_mut() {
             *first = vec![RateTerm { exponent: 0, coefficient: coefficient(over.frequency)? }];
         }
+        let constants = Arc::new(AmplitudePolynomials::new(over.ring));
+        let printed = |u: Polar<K::Element>| {
+            let constants = Arc::clone(&constants);
+            Formula::new(move |style| u.print(&constants, style))
+        };
         Ok(Averaging {
             problem: self.problem.clone(),
             order,
             checked_orders: over.checked_orders,
             amplitude_rate: rates(over.expansion.amplitude_rate)?,
             phase_rate,
-            solution: over.solution,
-            terms: over.terms,
+            terms: over.expansion.solution.iter().map(Polar::terms).collect(),
+            solution: over.expansion.solution.into_iter().map(printed).collect(),
             symbols: self.names.iter().filter(|n| self.value(n).is_none()).cloned().collect(),
             exact,
             cycles: None,
@@ -418,7 +406,8 @@ impl<'a> Task<'a> {
             && let Some((expansion, checked)) =
                 self.over_words(field, &formulas.with_stop(self.settings.stop.clone()), observer)?
         {
-            let over = Over::new(field.clone(), frequency.clone(), expansion, checked);
+            let (ring, frequency) = (field.clone(), frequency.clone());
+            let over = Over { ring, frequency, expansion, checked_orders: checked };
             return Ok((field.clone(), over));
         }
         let field = field.clone();

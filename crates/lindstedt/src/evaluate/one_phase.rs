@@ -121,7 +121,11 @@ impl FirstOrder {
             None => {
                 let message = "the integral of the law over the phase does not converge at this amplitude: it has no \
                                finite value on the way, a pole that is not integrable, or oscillates too fast";
-                Refused::no_answer("no-value", message, "a smaller --cycles, where the pole lies beyond it")
+                Refused::no_answer(
+                    "no-value",
+                    message,
+                    "a smaller --cycles, where the pole lies beyond it",
+                )
             }
         };
         let rates = law.rates(top).ok_or_else(undefined)?;

@@ -3,7 +3,9 @@
 use super::{Present, both, classification, condition_text, equation, head};
 use crate::{Document, Formula};
 use lindstedt::Answer;
-use lindstedt::averaging::{Averaging, Coefficient, Cycles, RateTerm, SingleCycle, print_series};
+use lindstedt::averaging::{
+    self, Averaging, Coefficient, Cycles, RateTerm, SingleCycle, print_series,
+};
 use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::equation::Condition;
 use std::borrow::Cow;
@@ -170,9 +172,8 @@ fn ansatz(small: &str) -> Formula {
 
 fn solution(result: &Averaging, n: usize) -> Formula {
     both(|style| {
-        let position = usize::from(style == Style::Latex);
-        let solution = result.solution.get(n).map_or("0", |pair| pair[position].as_str());
-        format!("{} = {}", indexed("u", n, style), shortened(solution.to_owned(), style))
+        let solution = result.solution.get(n).map_or(Cow::Borrowed("0"), |u| printed(u, style));
+        format!("{} = {}", indexed("u", n, style), shortened(solution.into_owned(), style))
     })
 }
 
@@ -193,8 +194,11 @@ fn residual(result: &Averaging) -> String {
     )
 }
 
-/// sum of c a^exponent.
-/// A sum of powers of a name.
+fn printed(formula: &averaging::Formula, style: Style) -> Cow<'_, str> {
+    if style == Style::Latex { formula.latex().into() } else { formula.text().into() }
+}
+
+/// sum of c name^exponent.
 fn rate(terms: &[RateTerm], name: &str, style: Style) -> String {
     let mut line = String::new();
     for term in terms {
@@ -203,8 +207,7 @@ fn rate(terms: &[RateTerm], name: &str, style: Style) -> String {
             Coefficient::Number(number) | Coefficient::ClosedForm { number, .. } => {
                 number.exact.as_ref().unwrap_or(&number.decimal).into()
             }
-            Coefficient::Formula(formula) if style == Style::Latex => formula.latex().into(),
-            Coefficient::Formula(formula) => formula.text().into(),
+            Coefficient::Formula(formula) => printed(formula, style),
         };
         let is_sum = coefficient.trim_start_matches('-').contains([' ']);
         let name = (term.exponent != 0).then(|| power(name, term.exponent.into(), style));
