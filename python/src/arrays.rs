@@ -214,7 +214,7 @@ pub fn chart<'py>(
     let (chart, radius) = means.ask(py, move |work| {
         let radius = options.flag("radius")?;
         let part = part(&options)?;
-        let question = Stability { radius, part, ..verbs::stability(case, &options, &work.stop)? };
+        let question = Stability { radius, part, ..verbs::stability(case, &options)? };
         let grid = case.stability(&question, work)?.value.grid;
         Ok((grid.ok_or_else(missing)?, radius))
     })?;
@@ -244,7 +244,7 @@ pub fn surface<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (sweep, standing) = means.ask(py, move |work| {
         let part = part(&options)?;
-        let question = Threshold { part, ..verbs::threshold(case, &options, &work.stop)? };
+        let question = Threshold { part, ..verbs::threshold(case, &options)? };
         let found = case.threshold(&question, work)?;
         Ok((found.value.sweep.ok_or_else(missing)?, found.standing))
     })?;

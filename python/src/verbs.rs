@@ -16,7 +16,7 @@ use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Oscillator, Respond, Simulate, Stability, Stop, Threshold,
+    Condition, Derive, Error, Evaluate, Oscillator, Respond, Simulate, Stability, Threshold,
     Verify, Work,
 };
 
@@ -33,7 +33,7 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
         "derive" => derive(case, options, work),
         "evaluate" => evaluated(case, options, work),
         "respond" => {
-            let question = respond(case, options, &work.stop)?;
+            let question = respond(case, options)?;
             boxed(case.respond(&question, work))
         }
         "verify" => {
@@ -54,11 +54,11 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
                     Persisting::First(answer) => answer,
                 });
             }
-            let question = threshold(case, options, &work.stop)?;
+            let question = threshold(case, options)?;
             boxed(case.threshold(&question, work))
         }
         "stability" => {
-            let question = stability(case, options, &work.stop)?;
+            let question = stability(case, options)?;
             boxed(case.stability(&question, work))
         }
         other => Err(usage(format!("there is no question {other:?}"), "derive, evaluate, ...")),
@@ -122,7 +122,7 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     }
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
-        if let (Some(columns), rows) = options.axes(|axis| case.axis_until(axis, &work.stop))? {
+        if let (Some(columns), rows) = options.axes(|axis| case.axis(axis))? {
             let question = averaged(options)?;
             options.finish()?;
             return boxed(case.averaged_sweep(&question, columns, rows, work));
@@ -133,7 +133,7 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         return boxed(case.averaged_motion(&question, work));
     }
     // What is not read before `finish` is refused: a sweep has no times, phase and code, a proof no code.
-    if let (Some(columns), rows) = options.axes(|axis| case.axis_until(axis, &work.stop))? {
+    if let (Some(columns), rows) = options.axes(|axis| case.axis(axis))? {
         let question = resummed(options)?;
         options.finish()?;
         return match (prove, rows) {
@@ -160,8 +160,9 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     boxed(case.solution_code(&question, language, harmonics, work))
 }
 
-fn respond(case: &Oscillator, options: &Options, stop: &Stop) -> Result<Respond, Error> {
-    let (sweep, second) = options.axes(|axis| Respond::read_sweep(case, axis, stop))?;
+fn respond(case: &Oscillator, options: &Options) -> Result<Respond, Error> {
+    let (sweep, second) =
+        options.axes(|axis| Respond::read_sweep(case, axis, &lindstedt::Stop::default()))?;
     let question = Respond {
         order: options.parsed("order")?,
         sweep,
@@ -265,15 +266,15 @@ fn simulate(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     boxed(case.motion(&question, work))
 }
 
-fn swept(case: &Oscillator, options: &Options, stop: &Stop) -> Result<Vec<Axis>, Error> {
-    let (columns, rows) = options.axes(|axis| case.axis_until(axis, stop))?;
+fn swept(case: &Oscillator, options: &Options) -> Result<Vec<Axis>, Error> {
+    let (columns, rows) = options.axes(|axis| case.axis(axis))?;
     Ok(columns.into_iter().chain(rows).collect())
 }
 
 /// The question for a threshold.
-pub fn threshold(case: &Oscillator, options: &Options, stop: &Stop) -> Result<Threshold, Error> {
+pub fn threshold(case: &Oscillator, options: &Options) -> Result<Threshold, Error> {
     let question = Threshold {
-        sweep: swept(case, options, stop)?,
+        sweep: swept(case, options)?,
         zeros: options.read("zeros", Axis::ends)?,
         subharmonics: options.parsed("subharmonics")?,
         second_order: options.flag("second_order")?,
@@ -284,7 +285,7 @@ pub fn threshold(case: &Oscillator, options: &Options, stop: &Stop) -> Result<Th
 }
 
 /// The question for a stability.
-pub fn stability(case: &Oscillator, options: &Options, stop: &Stop) -> Result<Stability, Error> {
+pub fn stability(case: &Oscillator, options: &Options) -> Result<Stability, Error> {
     let (variant, impact_aware) =
         options.choice("variant", VARIANTS)?.unwrap_or((Variant::E, false));
     let (predict, exact) = options.choice("predictor", PREDICTORS)?.unwrap_or((true, true));
@@ -296,7 +297,7 @@ pub fn stability(case: &Oscillator, options: &Options, stop: &Stop) -> Result<St
         predict,
         exact,
         branch: branch(options)?,
-        sweep: swept(case, options, stop)?,
+        sweep: swept(case, options)?,
         ..Stability::default()
     };
     options.finish()?;
