@@ -171,7 +171,7 @@ fn predictions_of_memory_refuse_what_is_far_beyond() {
     }
 }
 
-/// The most resident memory of a program while it ran, in MiB, and how it ended.
+/// The most memory of its own (without pages of files) that a program had while it ran, in MiB, and how it ended.
 fn peak(command: &mut Command) -> (u64, Option<i32>) {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let mut most = 0;
