@@ -317,10 +317,11 @@ impl Homoclinic<'_> {
         tick: &Tick<'_>,
     ) -> Result<Tangency, SimulateError> {
         let mut periods = self.arrival(value, phase, tick)?;
-        let (mut value, mut phase) = self.newton((value, phase), periods, tick)?;
+        let mut known = Known::default();
+        let (mut value, mut phase) = self.newton((value, phase), periods, &mut known, tick)?;
         let mut error = f64::INFINITY;
         for _ in 0..3 {
-            let next = match self.newton((value, phase), periods + 1, tick) {
+            let next = match self.newton((value, phase), periods + 1, &mut known, tick) {
                 Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
                 Err(failure) if error == f64::INFINITY => return Err(failure),
                 Err(_) => break,
@@ -338,7 +339,7 @@ impl Homoclinic<'_> {
         let nearer =
             saddle.multipliers[0] > ORDINARY && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
         let begun = if nearer { (phase - 1.0, periods + 1) } else { (phase + 1.0, periods - 1) };
-        let (other, _) = self.newton((value, begun.0), begun.1, tick)?;
+        let (other, _) = self.newton((value, begun.0), begun.1, &mut known, tick)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
@@ -403,7 +404,7 @@ impl Homoclinic<'_> {
         &self,
         (here, value, phase, g): (&Place, f64, f64, f64),
         periods: u32,
-        steps: &mut Steps,
+        Known { steps, .. }: &mut Known,
         tick: &Tick<'_>,
     ) -> Result<Option<Derivatives>, SimulateError> {
         let guess = here.1.state;
@@ -428,50 +429,74 @@ impl Homoclinic<'_> {
         &self,
         start: (f64, f64),
         periods: u32,
+        known: &mut Known,
         tick: &Tick<'_>,
     ) -> Result<(f64, f64), SimulateError> {
         let (mut value, mut phase) = start;
-        let (mut moved, mut before) = (f64::INFINITY, f64::INFINITY);
-        let mut steps = Steps { value: 1e-6, phase: 1e-5 };
+        let (mut moved, mut before) = (f64::INFINITY, None);
         // The saddles of one step lie near those of the step before.
         let mut guess = self.guess;
-        let mut kept: Option<Derivatives> = None;
         for _ in 0..30 {
             let here = self.at(value, guess, tick)?;
             guess = here.1.state;
             let found = self.unstable_component(&here, phase, periods, tick)?;
-            // Four more orbits, where those of the step before do not bring G down.
-            let falls = found[0].abs() <= FALL * before;
-            let kept_on = kept.take().filter(|_| falls);
-            let fresh = kept_on.is_none();
-            let derivatives = match kept_on {
+            // Near the saddle G grows by the multiplier in a period, and a phase is a share of one.
+            let length = f64::from(periods) + phase;
+            let growth = |from: f64| here.1.multipliers[0].powf(length - from);
+            let kept = known.derivatives.take().map(|(from, kept)| {
+                let kept = kept.times(growth(from));
+                before.map_or(kept, |(last, step)| kept.corrected([last, found], step))
+            });
+            // Four more orbits, where they do not bring the steps down.
+            let kept = kept.filter(|kept| {
+                let dv = kept.step(found)[0].abs();
+                dv <= FALL * moved || dv < 1e-12
+            });
+            let fresh = kept.is_none();
+            let derivatives = match kept {
                 Some(derivatives) => derivatives,
                 None => {
                     let near = (&here, value, phase, found[0]);
-                    match self.derivatives(near, periods, &mut steps, tick)? {
+                    match self.derivatives(near, periods, known, tick)? {
                         Some(derivatives) => derivatives,
                         None => continue,
                     }
                 }
             };
-            before = found[0].abs();
+            known.derivatives = Some((length, derivatives));
             let [dv, dp] = derivatives.step(found);
             if !(dv.is_finite() && dp.is_finite()) {
                 break;
             }
             // Not out of the neighbourhood where G means something.
             let damping = (0.05 / dp.abs()).min(0.02 / dv.abs()).min(1.0);
-            value += damping * dv;
-            phase += damping * dp;
-            // Far below the change from one number of periods to the next, or rounding errors.
-            let settled = fresh && dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved;
-            if dv.abs() < 1e-12 || settled {
+            let step = [dv, dp].map(|d| damping * d);
+            value += step[0];
+            phase += step[1];
+            before = Some((found, step));
+            // The next step is smaller than this one by as much as this one than the last, and what is left when it is far
+            // below the change from one number of periods to the next is nothing; or these are rounding errors.
+            let ratio = (dv.abs() / moved).min(1.0);
+            let settled = fresh && dv.abs() < 1e-8 && ratio >= 0.25;
+            if dv.abs() < 1e-12 || moved.is_finite() && ratio * dv.abs() < 1e-12 || settled {
                 return Ok((value, phase));
             }
             moved = dv.abs();
-            kept = Some(derivatives);
         }
         Err(SimulateError::NoTangency { value: start.0 })
+    }
+}
+
+/// What one search for a tangency leaves to the next, of an orbit followed for another time.
+struct Known {
+    steps: Steps,
+    /// The last derivatives, and the time N + sigma, in periods, of the orbit that they are of.
+    derivatives: Option<(f64, Derivatives)>,
+}
+
+impl Default for Known {
+    fn default() -> Self {
+        Self { steps: Steps { value: 1e-6, phase: 1e-5 }, derivatives: None }
     }
 }
 
@@ -482,12 +507,37 @@ struct Steps {
 }
 
 /// Of G and dG/dsigma by the value, and d^2 G/dsigma^2.
+#[derive(Clone, Copy)]
 struct Derivatives {
     by_value: [f64; 2],
     curvature: f64,
 }
 
 impl Derivatives {
+    fn times(self, growth: f64) -> Self {
+        let Self { by_value, curvature } = self;
+        Self { by_value: by_value.map(|d| growth * d), curvature: growth * curvature }
+    }
+
+    /// The derivatives after a step, by what G and dG/dsigma came to: dG/dsigma is known, the rest by the least change that
+    /// agrees (Broyden, Math. Comp. 19, 1965).
+    fn corrected(self, [last, found]: [[f64; 2]; 2], [dv, dp]: [f64; 2]) -> Self {
+        let Self { by_value: [mut value, mut slope], mut curvature } = self;
+        let square = dv * dv + dp * dp;
+        if square.sqrt() < TELLS {
+            return self;
+        }
+        let missing = found[1] - last[1] - slope * dv - curvature * dp;
+        slope += missing * dv / square;
+        curvature += missing * dp / square;
+        let bent = (last[1] + found[1]) / 2.0 * dp;
+        // Of a small part of the step the other one tells more.
+        if dv.abs() > dp.abs() {
+            value = (found[0] - last[0] - bent) / dv;
+        }
+        Self { by_value: [value, slope], curvature }
+    }
+
     /// The step in the value and in the phase to G = dG/dsigma = 0.
     fn step(&self, [g, slope]: [f64; 2]) -> [f64; 2] {
         let determinant = self.by_value[0] * self.curvature - self.by_value[1] * slope;
@@ -497,8 +547,10 @@ impl Derivatives {
     }
 }
 
-/// The derivatives of one step serve the next where |G| falls to this share of what it was.
-const FALL: f64 = 0.1;
+/// The derivatives of one step serve the next where that is smaller by this factor.
+const FALL: f64 = 0.3;
+/// Steps below this tell of rounding errors, not of derivatives.
+const TELLS: f64 = 1e-8;
 /// Farther than this from the saddle the coordinates tell nothing.
 const AWAY: f64 = 0.4;
 /// Near enough to begin with.
