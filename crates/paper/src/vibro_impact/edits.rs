@@ -13,12 +13,13 @@ pub(super) struct Edit {
 /// All changes of one place. The likelier ones come first: signs, symbols, exchanges.
 pub(super) fn edits(tree: &Tree, vocabulary: &[String]) -> Vec<Edit> {
     let paths = tree.paths();
+    let places: Vec<String> = paths.iter().map(|path| place(tree, path)).collect();
     let mut list = Vec::new();
     for kind in [signs, functions, symbols, omissions, insertions, numbers] {
-        for path in &paths {
+        for (path, place) in paths.iter().zip(&places) {
             if let Some(node) = tree.at(path) {
                 kind(node, vocabulary, &mut |new, what| {
-                    let what = format!("{what}{}", place(tree, path));
+                    let what = format!("{what}{place}");
                     list.push(Edit { tree: tree.with(path, new), what });
                 });
             }

@@ -222,20 +222,24 @@ impl Tree {
     /// The formula with another node at the end of a path.
     #[must_use]
     pub fn with(&self, path: &[usize], node: Self) -> Self {
-        let Some((&first, rest)) = path.split_first() else { return node };
         let mut copy = self.clone();
-        let part = match &mut copy {
+        if let Some(place) = copy.at_mut(path) {
+            *place = node;
+        }
+        copy
+    }
+
+    fn at_mut(&mut self, path: &[usize]) -> Option<&mut Self> {
+        let Some((&first, rest)) = path.split_first() else { return Some(self) };
+        let part = match self {
             Self::Number(_) | Self::Symbol(_) => None,
             Self::Sum(list) | Self::Product(list) => list.get_mut(first),
             Self::Negative(inner)
             | Self::Inverse(inner)
             | Self::Power(inner, _)
-            | Self::Apply(_, inner) => Some(&mut **inner),
+            | Self::Apply(_, inner) => (first == 0).then_some(&mut **inner),
         };
-        if let Some(part) = part {
-            *part = part.with(rest, node);
-        }
-        copy
+        part?.at_mut(rest)
     }
 
     /// The paths of all nodes, the node itself first.
