@@ -64,19 +64,33 @@ fn growth(series: &[f64], mean: f64, c: f64) -> f64 {
         let (sin, cos) = (f64::from(j) * c).sin_cos();
         p += phi * cos;
         q += phi * sin;
-        path.push((p, q));
+        path.push([p, q]);
     }
     let cut = series.len() / 10;
-    let places = (series.len() - cut) as f64;
+    let starts = &path[..series.len() - cut];
+    let places = starts.len() as f64;
     let displacements: Vec<f64> = (1..=cut)
         .map(|n| {
-            let pairs = path.iter().zip(&path[n..]).take(series.len() - cut);
-            let sum: f64 = pairs.map(|(a, b)| (b.0 - a.0).powi(2) + (b.1 - a.1).powi(2)).sum();
             // The part of the oscillation of the mean, which does not grow.
-            sum / places - mean * mean * (1.0 - (n as f64 * c).cos()) / (1.0 - c.cos())
+            square_of_distance(starts, &path[n..]) / places
+                - mean * mean * (1.0 - (n as f64 * c).cos()) / (1.0 - c.cos())
         })
         .collect();
     correlation(&displacements)
+}
+
+/// sum_j |b_j - a_j|^2 over all a_j, in sums that do not wait for one another.
+fn square_of_distance(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    let (a, b) = (a.as_flattened(), b[..a.len()].as_flattened());
+    let ((eights, rest), (others, other)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (a, b) in eights.iter().zip(others) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += (b - a) * (b - a);
+        }
+    }
+    let rest: f64 = rest.iter().zip(other).map(|(a, b)| (b - a) * (b - a)).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// The correlation coefficient of d_n with n; zero for a constant.
