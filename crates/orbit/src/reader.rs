@@ -189,8 +189,7 @@ impl Operations for Reader {
             }
             None => {}
         }
-        let found = self.fraction(base, &n, &whole());
-        found.or_else(|| self.refuse(Failure::NotPolynomial(whole())))
+        self.fraction(base, &n, &whole())
     }
 
     fn function(&mut self, function: Function, argument: &Expression) -> Option<Sum> {

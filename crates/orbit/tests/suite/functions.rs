@@ -135,6 +135,11 @@ fn what_leaves_the_classes_is_refused() {
     assert!(matches!(logarithm, Err(Failure::NotPolynomial(_))));
     let drifting = of(x() + Expression::Time * x());
     assert!(matches!(drifting, Err(Failure::NotPolynomial(_))));
+    // Quotients are taken, so many of them are not.
+    let quotients =
+        |count: i64| (1..=count).fold(x(), |sum, k| sum + x() * (x().pow(2) + k).pow(-1));
+    assert!(of(quotients(20)).is_ok());
+    assert_eq!(of(quotients(50)).err(), Some(Failure::TooManyTerms));
     // 1/x on an orbit that passes 0.
     let start = Start { frequency: 1.0, cosines: vec![0.0, 1.0], sines: vec![] };
     let pole = of(x() + q(1, 10) * x().pow(-1)).unwrap();
