@@ -333,6 +333,9 @@ impl Homoclinic<'_> {
             }
             (value, phase) = next;
             (error, periods) = (change, periods + 1);
+            if error < SETTLED {
+                break;
+            }
         }
         // The same orbit, begun one period farther out, or nearer where that is far: how straight the manifold is.
         let saddle = self.saddle(value, tick)?;
@@ -340,6 +343,7 @@ impl Homoclinic<'_> {
             saddle.multipliers[0] > ORDINARY && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
         let begun = if nearer { (phase - 1.0, periods + 1) } else { (phase + 1.0, periods - 1) };
         let (other, _) = self.newton((value, begun.0), begun.1, &mut known, tick)?;
+
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
@@ -447,10 +451,13 @@ impl Homoclinic<'_> {
                 let kept = kept.times(growth(from));
                 before.map_or(kept, |(last, step)| kept.corrected([last, found], step))
             });
+            if let Some(kept) = &kept {
+                known.steps.shorten(kept);
+            }
             // Four more orbits, where they do not bring the steps down.
             let kept = kept.filter(|kept| {
                 let dv = kept.step(found)[0].abs();
-                dv <= FALL * moved || dv < 1e-12
+                dv <= FALL * moved || dv < SETTLED
             });
             let fresh = kept.is_none();
             let derivatives = match kept {
@@ -478,7 +485,7 @@ impl Homoclinic<'_> {
             // below the change from one number of periods to the next is nothing; or these are rounding errors.
             let ratio = (dv.abs() / moved).min(1.0);
             let settled = fresh && dv.abs() < 1e-8 && ratio >= 0.25;
-            if dv.abs() < 1e-12 || moved.is_finite() && ratio * dv.abs() < 1e-12 || settled {
+            if dv.abs() < SETTLED || moved.is_finite() && ratio * dv.abs() < SETTLED || settled {
                 return Ok((value, phase));
             }
             moved = dv.abs();
@@ -506,6 +513,14 @@ struct Steps {
     phase: f64,
 }
 
+impl Steps {
+    /// No longer than what changes G by 1e-4.
+    fn shorten(&mut self, Derivatives { by_value, curvature }: &Derivatives) {
+        self.value = self.value.min((1e-4 / by_value[0]).abs());
+        self.phase = self.phase.min((1e-4 / curvature).abs().sqrt());
+    }
+}
+
 /// Of G and dG/dsigma by the value, and d^2 G/dsigma^2.
 #[derive(Clone, Copy)]
 struct Derivatives {
@@ -530,10 +545,9 @@ impl Derivatives {
         let missing = found[1] - last[1] - slope * dv - curvature * dp;
         slope += missing * dv / square;
         curvature += missing * dp / square;
-        let bent = (last[1] + found[1]) / 2.0 * dp;
         // Of a small part of the step the other one tells more.
-        if dv.abs() > dp.abs() {
-            value = (found[0] - last[0] - bent) / dv;
+        if dv.abs() > 0.1 * dp.abs() {
+            value = (found[0] - last[0] - (last[1] + found[1]) / 2.0 * dp) / dv;
         }
         Self { by_value: [value, slope], curvature }
     }
@@ -549,6 +563,8 @@ impl Derivatives {
 
 /// The derivatives of one step serve the next where that is smaller by this factor.
 const FALL: f64 = 0.3;
+/// A value is not sought any closer.
+const SETTLED: f64 = 1e-12;
 /// Steps below this tell of rounding errors, not of derivatives.
 const TELLS: f64 = 1e-8;
 /// Farther than this from the saddle the coordinates tell nothing.
