@@ -14,19 +14,23 @@ pub struct ZeroOne {
 
 /// Frequencies c per test.
 const FREQUENCIES: u32 = 100;
+/// What moves by less than this share of its size is constant: the rest is rounding errors.
+const CONSTANT: f64 = 1e-9;
 
 /// The 0-1 test of Gottwald and Melbourne (SIAM J. Appl. Dyn. Syst. 8, 2009, 129-145): with
 ///
 /// p_c(n) = sum_{j<=n} phi_j cos jc,  q_c(n) = sum_{j<=n} phi_j sin jc,
-/// M_c(n) = mean_j ((p_c(j+n) - p_c(j))^2 + (q_c(j+n) - q_c(j))^2)
-///        - mean(phi)^2 (1 - cos nc)/(1 - cos c),  n = 1..=N/10,  j = 1..=N - N/10,
+/// M_c(n) = mean_j ((p_c(j+n) - p_c(j))^2 + (q_c(j+n) - q_c(j))^2),  n = 1..=N/10,  j = 1..=N - N/10,
+///
+/// phi_j the numbers of the series less their mean (which would add mean^2 (1 - cos nc)/(1 - cos c) to M_c, in which small
+/// motions are lost),
 ///
 /// K_c is the correlation coefficient of M_c(n) and n, K its median over 100 values of c in
 /// (pi/5, 4 pi/5) (multiples of the golden ratio modulo 1: the same ones every time).
 ///
 /// A statistical estimate, with no bound; errors like 1/sqrt(N). The series must not be sampled
 /// too finely: take stroboscopic points, and every m-th of them where the attractor has m bands
-/// (several bands look regular). Nothing for less than 100 points or values that are not finite.
+/// (several bands look regular). A series that is constant to nine digits is regular: K = 0. Nothing for less than 100 points or values that are not finite.
 /// `tick` is asked before each of the 100 frequencies, nothing if it breaks off. Cost: O(100 N^2/10).
 ///
 /// ```
@@ -42,10 +46,15 @@ pub fn zero_one(series: &[f64], tick: &Tick<'_>) -> Option<ZeroOne> {
         return None;
     }
     let mean = series.iter().sum::<f64>() / series.len() as f64;
+    let size = |series: &[f64]| series.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+    let motion: Vec<f64> = series.iter().map(|x| x - mean).collect();
+    if size(&motion) <= CONSTANT * size(series) {
+        return Some(ZeroOne { k: 0.0, quartiles: (0.0, 0.0) });
+    }
     let golden = (5f64.sqrt() - 1.0) / 2.0;
     let mut growths: Vec<f64> = (1..=FREQUENCIES)
         .map(|k| std::f64::consts::PI * (0.2 + 0.6 * (f64::from(k) * golden).fract()))
-        .map(|c| tick().is_continue().then(|| growth(series, mean, c)))
+        .map(|c| tick().is_continue().then(|| growth(&motion, c)))
         .collect::<Option<_>>()?;
     growths.sort_by(f64::total_cmp);
     let at = |share: f64| {
@@ -57,25 +66,19 @@ pub fn zero_one(series: &[f64], tick: &Tick<'_>) -> Option<ZeroOne> {
 }
 
 /// K_c.
-fn growth(series: &[f64], mean: f64, c: f64) -> f64 {
+fn growth(motion: &[f64], c: f64) -> f64 {
     let (mut p, mut q) = (0.0, 0.0);
-    let mut path = Vec::with_capacity(series.len());
-    for (j, phi) in (1u32..).zip(series) {
+    let mut path = Vec::with_capacity(motion.len());
+    for (j, phi) in (1u32..).zip(motion) {
         let (sin, cos) = (f64::from(j) * c).sin_cos();
         p += phi * cos;
         q += phi * sin;
         path.push([p, q]);
     }
-    let cut = series.len() / 10;
-    let starts = &path[..series.len() - cut];
-    let places = starts.len() as f64;
-    let displacements: Vec<f64> = (1..=cut)
-        .map(|n| {
-            // The part of the oscillation of the mean, which does not grow.
-            square_of_distance(starts, &path[n..]) / places
-                - mean * mean * (1.0 - (n as f64 * c).cos()) / (1.0 - c.cos())
-        })
-        .collect();
+    let cut = motion.len() / 10;
+    let starts = &path[..motion.len() - cut];
+    let displacements: Vec<f64> =
+        (1..=cut).map(|n| square_of_distance(starts, &path[n..]) / starts.len() as f64).collect();
     correlation(&displacements)
 }
 

@@ -327,9 +327,8 @@ fn diagnostics_of_a_periodic_impact_orbit() {
     let orbit = from(&[], "30", "100");
     let unstable = 1.167_783_795_500_397_5_f64.ln() / period;
     assert!((float(&orbit["lyapunov"]) - unstable).abs() < 1e-4, "{orbit}");
-    // The same point once per period, to rounding errors.
-    let k = orbit["zero_one"]["k"][0]["decimal"].as_str().unwrap();
-    assert!(k.parse::<f64>().unwrap().abs() < 0.3, "{orbit}");
+    // Rounding errors grow to a part in 10^8: that is neither the one nor the other.
+    assert!(orbit["verdict"].as_str().unwrap().contains("0-1 test undecided"), "{orbit}");
     for start in [&[][..], &["--state", "-0.5,0.1"]] {
         let found = from(start, "1000", "2000");
         let stable = 0.6f64.ln() / period - 0.1;

@@ -305,8 +305,9 @@ impl Run<'_> {
 
     fn verdict(&self, exponent: Option<&Exponent>, test: Option<&ZeroOneTest>) -> String {
         let exponent = exponent.map(|exponent| self.of_exponent(exponent));
-        // The test whose K is largest.
-        let largest = test.and_then(|t| t.k.iter().max_by(|a, b| a.found.k.total_cmp(&b.found.k)));
+        // The first test whose K is largest.
+        let largest =
+            test.and_then(|t| t.k.iter().rev().max_by(|a, b| a.found.k.total_cmp(&b.found.k)));
         let test = largest.map(|test| self.of_test(test));
         exponent.into_iter().chain(test).collect::<Vec<_>>().join("; ")
     }
