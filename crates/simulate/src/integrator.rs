@@ -281,7 +281,11 @@ impl<'s, R: Real> Integrator<'s, R> {
     }
 
     /// One step of [`Self::advance_while`].
-    fn next(&mut self, target: &R::Element, tick: &Tick<'_>) -> Result<Next, SimulateError> {
+    pub(crate) fn next(
+        &mut self,
+        target: &R::Element,
+        tick: &Tick<'_>,
+    ) -> Result<Next, SimulateError> {
         let target = Clock::new(&self.system.real, target);
         let remaining = target.since(&self.system.real, &self.clock);
         if self.system.real.sign(&remaining) <= 0 {

@@ -96,7 +96,8 @@ pub fn largest_lyapunov_exponents<R: Real>(
             // Who has ended keeps his lane.
             let mut told: Vec<_> =
                 running.iter().map(|one| one.ended.is_some().then_some(Ok(()))).collect();
-            let mut flows: Vec<_> = running.iter_mut().map(|one| &mut one.flow).collect();
+            let mut flows: Vec<_> =
+                running.iter_mut().map(|one| (&mut one.flow, &mut one.carried)).collect();
             advance_all(&mut flows, group.as_deref_mut(), &target, &mut told);
             for (one, told) in running.iter_mut().zip(told.into_iter().flatten()) {
                 if one.ended.is_none() {
@@ -122,24 +123,27 @@ pub fn largest_lyapunov_exponents<R: Real>(
     all.into_iter().zip(systems).map(exponent).collect()
 }
 
-/// Every integration of which nothing is told yet to the target, side by side where they are a group.
+/// Every integration of which nothing is told yet to the target, side by side where they are a group, and ln of what its
+/// directions were divided by on the way.
 fn advance_all<R: Real>(
-    flows: &mut [&mut Integrator<'_, R>],
+    flows: &mut [(&mut Integrator<'_, R>, &mut f64)],
     mut group: Option<&mut (dyn Together<R> + '_)>,
     target: &R::Element,
     told: &mut [Option<Result<(), SimulateError>>],
 ) {
     while told.iter().any(Option::is_none) {
-        let Some(group) = group.as_deref_mut() else {
-            let open = flows.iter_mut().zip(told).filter(|(_, told)| told.is_none());
-            return open.for_each(|(flow, told)| *told = Some(flow.advance_while(target, &go_on)));
-        };
         let aim = |told: &Option<_>| told.is_none().then(|| target.clone());
-        let mut pairs: Vec<_> =
-            flows.iter_mut().zip(&*told).map(|(flow, told)| (&mut **flow, aim(told))).collect();
-        for (told, next) in told.iter_mut().zip(group.round(&mut pairs, &go_on)) {
+        let pairs = flows.iter_mut().zip(&*told).map(|((flow, _), told)| (&mut **flow, aim(told)));
+        let next: Vec<_> = match group.as_deref_mut() {
+            Some(group) => group.round(&mut pairs.collect::<Vec<_>>(), &go_on),
+            None => pairs
+                .map(|(flow, aim)| aim.map_or(Ok(Next::Idle), |aim| flow.next(&aim, &go_on)))
+                .collect(),
+        };
+        for ((told, next), (flow, carried)) in told.iter_mut().zip(next).zip(flows.iter_mut()) {
             match next {
-                Ok(Next::Idle | Next::Moved) => {}
+                Ok(Next::Idle) => {}
+                Ok(Next::Moved) => **carried += flow.bound_directions(),
                 Ok(Next::Reached) => *told = Some(Ok(())),
                 Ok(Next::Stopped) => *told = Some(Err(SimulateError::Stopped)),
                 Err(error) => *told = Some(Err(error)),
@@ -153,6 +157,8 @@ struct Growth<'s, R: Real> {
     flow: Integrator<'s, R>,
     growths: Vec<f64>,
     left: f64,
+    /// ln of what the directions were divided by within the interval.
+    carried: f64,
     ended: Option<Result<Option<LyapunovExponent>, SimulateError>>,
 }
 
@@ -169,7 +175,7 @@ impl<'s, R: Real> Growth<'s, R> {
             return Err(SimulateError::WrongDimension { states: n, given });
         }
         let flow = Integrator::new(system, time, state, settings.integration)?;
-        Ok(Self { flow, growths: Vec::new(), left: 0.0, ended: None })
+        Ok(Self { flow, growths: Vec::new(), left: 0.0, carried: 0.0, ended: None })
     }
 
     /// The end of an interval.
@@ -178,8 +184,13 @@ impl<'s, R: Real> Growth<'s, R> {
             self.ended = Some(Err(error));
             return;
         }
-        let growth = self.flow.normalise_directions(&mut self.left);
-        if growth == f64::NEG_INFINITY {
+        let growth =
+            self.flow.normalise_directions(&mut self.left) + std::mem::take(&mut self.carried);
+        if growth == f64::NEG_INFINITY && !counts {
+            // Forgotten in the transient, by a rest say: what comes after it has perturbations of its own.
+            self.flow.restart_directions();
+            self.left = 0.0;
+        } else if growth == f64::NEG_INFINITY {
             // All directions are zero, for good.
             self.ended = Some(Ok(Some(LyapunovExponent { value: growth, error: 0.0 })));
         } else if !growth.is_finite() {
@@ -204,7 +215,31 @@ impl<'s, R: Real> Growth<'s, R> {
     }
 }
 
+/// log2 of what directions may grow or decay to within an interval.
+const FAR: f64 = 300.0;
+
 impl<R: Real> Integrator<'_, R> {
+    /// Divides all directions by a power of two where they leave the middle of the range of doubles; returns its ln.
+    fn bound_directions(&mut self) -> f64 {
+        let real = &self.system.real;
+        let directions = &mut self.state[self.system.variables..];
+        let power = real.log2_of_largest(directions.iter()).round();
+        if !(power.is_finite() && power.abs() > FAR) {
+            return 0.0;
+        }
+        let factor = real.double((-power).exp2());
+        directions.iter_mut().for_each(|x| real.scale(x, &factor));
+        power * std::f64::consts::LN_2
+    }
+
+    /// The directions of a start.
+    fn restart_directions(&mut self) {
+        let (real, n) = (&self.system.real, self.system.variables);
+        for (place, x) in self.state[n..].iter_mut().enumerate() {
+            *x = real.double(if place / n == place % n { 1.0 } else { 0.0 });
+        }
+    }
+
     /// Divides all directions by a power of two near their largest component (no rounding errors);
     /// `left` is ln of what is left of it. Returns the growth since the time before.
     fn normalise_directions(&mut self, left: &mut f64) -> f64 {

@@ -312,6 +312,18 @@ fn chaos_in_doubles_says_what_to_do() {
     assert!(text.contains("--lyapunov") && text.contains("without --f64"), "{text}");
 }
 
+/// Directions that decay beyond the range of doubles within one period of the force; those that a rest in the transient
+/// forgets begin anew (the same orbit without a rest has this exponent, too).
+#[test]
+fn exponents_of_slow_forces_and_after_rests() {
+    let slow = ["x'' + x' + x + x^3 = cos(t/500)", "--state", "1,0", "--f64", "--lyapunov"];
+    let found = json(&[&slow[..], &["--periods", "100", "--skip", "1"]].concat());
+    assert!((float(&found["lyapunov"]) + 0.5).abs() < 1e-4, "{found}");
+    let rests = ["vibro-impact", "--set", "R_r=0", "--set", "omega=2.5", "--set", "s=0"];
+    let found = json(&[&rests[..], &["--state", "-1,0", "--lyapunov"]].concat());
+    assert!((float(&found["lyapunov"]) + 0.417_154_46).abs() < 1e-7, "{found}");
+}
+
 /// The orbit starts just after an impact and has the period of the force: looked at once per period
 /// an impact is met every time. It is unstable, gamma = -1.167783795500397 (the characteristic
 /// function, `lindstedt stability`); it leaves after some 150 periods for a stable orbit, where

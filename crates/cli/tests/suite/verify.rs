@@ -188,3 +188,26 @@ fn text_and_figure() {
     let drawn = folder.text("x.svg");
     assert!(drawn.matches("<circle").count() >= 4 && drawn.contains("slope 2"));
 }
+
+/// Expansions that leave nothing out: what differs are rounding errors.
+#[test]
+fn exact_expansions_agree() {
+    for (equation, order) in [
+        ("x'' + 2*x = eps*cos(t+1/3)", "1"),
+        ("x'' + 2*x + eps*(-1/3)*cos(t+1/3) = 0", "3"),
+        ("x'' + x = eps*cos(3*t)", "2"),
+    ] {
+        let output = run(&[equation, "--order", order]);
+        let page = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success() && page.contains("rounding errors"), "{equation}: {page}");
+    }
+}
+
+/// The amplitude of the motion in time is no parameter of a forced response.
+#[test]
+fn steady_states_beside_a_given_amplitude() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps)*t)";
+    let asked = [equation, "--order", "2", "--set", "amplitude=2/3"];
+    let page = String::from_utf8(run(&asked).stdout).unwrap();
+    assert!(page.contains("differences of order 2 (3 of 3)"), "{page}");
+}

@@ -26,7 +26,7 @@ pub(super) fn with_digits(
     let mut digits = digits(order, condition, question);
     for _ in 1..MOST_TRIES {
         let found = run(digits)?;
-        if found.resolved {
+        if found.resolved || found.exact {
             return Ok(found);
         }
         digits = digits.saturating_add(digits / 2);

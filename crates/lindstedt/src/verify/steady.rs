@@ -134,11 +134,19 @@ impl SteadyStates {
             refused: None,
         };
         let name = oscillator.problem().small.to_string();
-        let at = |small: &Rational| {
-            let case = oscillator.clone().with(&name, Exact::Rational(small.clone()));
-            case.steady_orbits(question.order, work)
+        let lists = |oscillator: &Oscillator| {
+            let at = |small: &Rational| {
+                let case = oscillator.clone().with(&name, Exact::Rational(small.clone()));
+                case.steady_orbits(question.order, work)
+            };
+            question.small.iter().map(at).collect::<Result<Vec<_>, _>>()
         };
-        let lists = match question.small.iter().map(at).collect::<Result<Vec<_>, _>>() {
+        // The amplitude of the motion that is compared in time is none of a forced response.
+        let without = |error| match oscillator.given().contains_key("amplitude") {
+            true => lists(&oscillator.clone().without("amplitude")),
+            false => Err(error),
+        };
+        let lists = match lists(oscillator).or_else(without) {
             Ok(lists) => lists,
             Err(error) => {
                 found.refused = Some(error.to_string());

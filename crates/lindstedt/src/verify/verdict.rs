@@ -3,11 +3,15 @@
 use super::{SteadyStates, Verdict, Verify};
 use crate::{Number, Status};
 use lindstedt_equation::Condition;
+use rug::ops::Pow;
 use rug::{Float, Rational};
 use serde::{Serialize, Serializer};
 
 /// The observed order may differ from N + 1 by so much.
 pub const TOLERANCE: f64 = 0.05;
+
+/// Differences below this share of eps^(N+1) are rounding errors.
+const ROUNDING: f64 = 1e-8;
 
 /// The comparison at one value of the small parameter.
 #[derive(Clone, Debug)]
@@ -92,6 +96,9 @@ pub struct Verification {
     /// The last errors are smaller than the motion.
     #[serde(skip)]
     pub small_enough: bool,
+    /// There is no difference but rounding errors, far below eps^(N+1).
+    #[serde(skip)]
+    pub exact: bool,
 }
 
 impl Verification {
@@ -113,7 +120,15 @@ impl Verification {
         // The error of a wrong order is C eps^n with a whole n: another limit is not one yet.
         let power = limit.filter(|n| (n - n.round()).abs() <= TOLERANCE);
         let near = |n: f64| (n - expected).abs() <= TOLERANCE;
+        // Errors of rounding do not depend on eps, or are those of the integration.
+        let rounding = |c: &Comparison| {
+            let bound = Float::with_val(64, &c.small).abs().pow(order as u32 + 1) * ROUNDING;
+            c.error.clone().max(&c.simulation_error) <= bound * &c.size
+        };
+        let constant = !resolved || observed.is_some_and(|slope| slope.abs() < 0.5);
+        let exact = constant && table.len() > 1 && table.iter().all(rounding);
         let verdict = match power {
+            _ if exact => Verdict::Agrees,
             _ if !resolved || !small_enough => Verdict::Undecided,
             _ if observed.is_some_and(near) => Verdict::Agrees,
             Some(n) if n < expected && !near(n) => Verdict::Disagrees,
@@ -135,6 +150,7 @@ impl Verification {
             steady: None,
             resolved,
             small_enough,
+            exact,
         };
         found.reason = found.words();
         found
@@ -144,6 +160,12 @@ impl Verification {
     fn words(&self) -> String {
         let expected = self.expected_order;
         let few = self.table.len() < 3;
+        if self.exact {
+            return format!(
+                "agrees: the differences are rounding errors, far below {}^{expected}: no term is seen to be left out",
+                self.parameter
+            );
+        }
         match (self.verdict, self.observed_order) {
             (Verdict::Agrees, Some(slope)) if slope > expected as f64 + TOLERANCE => format!(
                 "agrees: observed order {slope:.4}, expected at least {expected}: the terms left out begin later"
