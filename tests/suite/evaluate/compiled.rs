@@ -18,6 +18,21 @@ fn single(oscillator: &Oscillator, order: usize, values: &[(&str, &str)]) -> Opt
     Some((found.decimal.parse().ok()?, found.error?.parse().ok()?))
 }
 
+/// A number of phases beyond that of all integers would wrap around.
+#[test]
+fn too_many_harmonics_are_refused() {
+    let duffing = Oscillator::builtin("duffing").unwrap();
+    for harmonics in [100_001, 1 << 62, (1 << 62) - 1, usize::MAX] {
+        let (question, work) = (Evaluate::default(), Work::default());
+        let function = duffing.solution_function(&question, harmonics, &work).unwrap_err();
+        let case = duffing.clone().set("eps", "1/2").unwrap();
+        let solution = case.periodic_solution(&question, harmonics, &work).unwrap_err();
+        for error in [function, solution] {
+            assert!(error.to_string().contains("too many"), "{error}");
+        }
+    }
+}
+
 /// omega by the function lies within its error, and where one point alone has eight digits it has six.
 #[test]
 fn frequencies_of_many_points_are_those_of_single_ones() {

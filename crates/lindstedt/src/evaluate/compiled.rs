@@ -2,7 +2,7 @@
 
 use super::code::no_value;
 use super::{Evaluate, Fourier, PeriodicSolution, Question, SolutionFunction, Trajectory};
-use crate::{Answer, DerivationError, Error, Exact, Oscillator, Remark, Standing, Work};
+use crate::{Answer, DerivationError, Error, Exact, Oscillator, Refused, Remark, Standing, Work};
 use lindstedt_equation::AmplitudeRole;
 use lindstedt_evaluation::EvaluationError;
 use lindstedt_evaluation::compiled::{FrequencyFunction, Varied};
@@ -11,6 +11,9 @@ use lindstedt_evaluation::{default_order, default_solution_order};
 use lindstedt_series::resummation::Estimated;
 use rug::Rational;
 use std::time::Instant;
+
+/// Four times as many phases are summed, each with many bits.
+const MOST_HARMONICS: usize = 100_000;
 
 const AMPLITUDE: &str = "amplitude";
 
@@ -76,6 +79,7 @@ impl Oscillator {
         harmonics: usize,
         work: &Work,
     ) -> Result<Answer<SolutionFunction>, Error> {
+        few_harmonics(harmonics)?;
         let make = |varied: &Varied<'_>| {
             let form = &varied.setting.form;
             let order = question.order.unwrap_or_else(|| default_solution_order(form));
@@ -163,6 +167,7 @@ impl Oscillator {
         harmonics: usize,
         work: &Work,
     ) -> Result<Answer<PeriodicSolution>, Error> {
+        few_harmonics(harmonics)?;
         let start = Instant::now();
         let solved = self.solved(question, harmonics, work)?;
         let (order, at, tier) = (solved.order, solved.at, solved.way.tier());
@@ -204,6 +209,15 @@ impl Oscillator {
 /// What varies, and the order.
 fn varying(frequency: &FrequencyFunction) -> (String, bool, usize) {
     (frequency.small.clone(), frequency.has_amplitude, frequency.order)
+}
+
+/// Refuses more harmonics than are ever summed.
+fn few_harmonics(harmonics: usize) -> Result<(), Error> {
+    if harmonics <= MOST_HARMONICS {
+        return Ok(());
+    }
+    let message = format!("{harmonics} harmonics are too many: at most {MOST_HARMONICS} are taken");
+    Err(Refused::usage("range", message, "fewer harmonics").into())
 }
 
 /// A solution that harmonics can be taken of.
