@@ -30,7 +30,8 @@ const CONSTANT: f64 = 1e-9;
 ///
 /// A statistical estimate, with no bound; errors like 1/sqrt(N). The series must not be sampled
 /// too finely: take stroboscopic points, and every m-th of them where the attractor has m bands
-/// (several bands look regular). A series that is constant to nine digits is regular: K = 0. Nothing for less than 100 points or values that are not finite.
+/// (several bands look regular). A series that is constant to nine digits is regular: K = 0. Nothing for
+/// less than 100 points or values that are not finite.
 /// `tick` is asked before each of the 100 frequencies, nothing if it breaks off. Cost: O(100 N^2/10).
 ///
 /// ```

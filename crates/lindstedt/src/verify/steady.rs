@@ -143,7 +143,7 @@ impl SteadyStates {
         };
         // The amplitude of the motion that is compared in time is none of a forced response.
         let without = |error| match oscillator.given().contains_key("amplitude") {
-            true => lists(&oscillator.clone().without("amplitude")),
+            true => lists(&oscillator.clone().without("amplitude")).map_err(|_| error),
             false => Err(error),
         };
         let lists = match lists(oscillator).or_else(without) {
