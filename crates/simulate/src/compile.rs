@@ -267,10 +267,8 @@ impl<'a, R: Real> Compiler<'a, R> {
                     return Value::Constant(c);
                 }
                 // One factor instead of two.
-                let index = row.checked_sub(self.tape.states);
-                if let Some(Op::Scale(inner, known)) = index.map(|index| self.tape.ops[index]) {
-                    let both = c * &self.exact[known];
-                    return self.product(Value::Constant(both), Value::Row(inner));
+                if let Some((inner, known)) = self.scaled(row) {
+                    return self.product(Value::Constant(c * known), Value::Row(inner));
                 }
                 let c = self.constant(&c);
                 Value::Row(self.push(Op::Scale(row, c)))
@@ -295,6 +293,14 @@ impl<'a, R: Real> Compiler<'a, R> {
                 });
             }
         };
+        // |c w| = |c| |w|: the arguments c w and w switch together.
+        if let (Function::Abs | Function::Sign, Some((inner, factor))) =
+            (function, self.scaled(row))
+        {
+            let factor = self.function(function, Value::Constant(factor));
+            let inner = self.function(function, Value::Row(inner));
+            return self.product(factor, inner);
+        }
         Value::Row(match function {
             Function::Ln => self.push(Op::Ln(row)),
             Function::Exp => self.push(Op::Exp(row)),
@@ -310,6 +316,14 @@ impl<'a, R: Real> Compiler<'a, R> {
                 self.push(Op::Control { switch, part: 0 })
             }
         })
+    }
+
+    /// The row and the constant of which a row is the product.
+    pub(crate) fn scaled(&self, row: usize) -> Option<(usize, Float)> {
+        match self.tape.ops.get(row.checked_sub(self.tape.states)?)? {
+            Op::Scale(inner, constant) => Some((*inner, self.exact[*constant].clone())),
+            _ => None,
+        }
     }
 
     /// The row of the sine; the cosine is the next one.

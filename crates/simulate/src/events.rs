@@ -126,6 +126,12 @@ impl<R: Real> Integrator<'_, R> {
         }
         let offset = system.walls.len() + system.switches.len();
         for (index, row) in system.sections.iter().enumerate() {
+            if let Some(switch) = system.switch_of(index) {
+                if self.sides[index] == 0 {
+                    self.sides[index] = self.phase.modes[switch];
+                }
+                continue;
+            }
             let row = self.series.rows.row(*row);
             let sign = real.sign(&row[0]);
             let skip = &mut self.vanishing[offset + index];
@@ -264,7 +270,23 @@ impl<R: Real> Integrator<'_, R> {
         {
             return Ok(ControlFlow::Continue(()));
         }
-        Ok(self.tell(kind, f64::NEG_INFINITY, observer))
+        let mut told = self.tell(kind, f64::NEG_INFINITY, observer);
+        // While a switch slides its argument is zero but for rounding errors: a section with that function is
+        // crossed when the sign is another than the last one.
+        if let EventKind::Switching { switch, to, .. } = kind
+            && to != 0
+        {
+            for section in 0..self.system.sections.len() {
+                if self.system.switch_of(section) == Some(switch) {
+                    let side = std::mem::replace(&mut self.sides[section], to);
+                    let kind = EventKind::Section { section, rising: to > 0 };
+                    if side == -to && self.tell(kind, f64::NEG_INFINITY, observer).is_break() {
+                        told = ControlFlow::Break(());
+                    }
+                }
+            }
+        }
+        Ok(told)
     }
 
     pub(crate) fn tell(

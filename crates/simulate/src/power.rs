@@ -46,7 +46,7 @@ impl<R: Real> Compiler<'_, R> {
             let base = self.expression(base)?;
             return Ok(self.real_power(base, &power));
         }
-        let inner = self.expression(inner)?;
+        let mut inner = self.expression(inner)?;
         let total = exact.map(|q| q * factor);
         if let Some(n) = total.as_ref().and_then(small_integer) {
             let even = self.integer_power(inner.clone(), n - n.rem_euclid(2));
@@ -56,11 +56,18 @@ impl<R: Real> Compiler<'_, R> {
             let modulus = self.function(Function::Abs, inner);
             return Ok(self.product(even, modulus));
         }
+        let power = power * factor;
+        // |c w|^p = |c|^p |w|^p, as for |c w|.
+        let mut constant = Value::Constant(self.float(1));
         if let Value::Row(row) = inner {
+            let (row, factor) = self.scaled(row).unwrap_or_else(|| (row, self.float(1)));
+            constant = self.real_power(Value::Constant(factor.abs()), &power);
             self.switch(row, true);
+            inner = Value::Row(row);
         }
         let modulus = self.function(Function::Abs, inner);
-        Ok(self.real_power(modulus, &(power * factor)))
+        let power = self.real_power(modulus, &power);
+        Ok(self.product(constant, power))
     }
 
     fn real_power(&mut self, base: Value, power: &Float) -> Value {

@@ -48,6 +48,9 @@ impl<R: Real> Integrator<'_, R> {
         let offset = system.walls.len() + system.switches.len();
         let mut told = ControlFlow::Continue(());
         for (section, row) in system.sections.iter().enumerate() {
+            if system.switch_of(section).is_some() {
+                continue;
+            }
             // A section only looks on: where it is touched nothing happens.
             let _ = self.search(*row, offset + section, h, (usize::MAX, AtCluster::Pass));
             self.vanishing[offset + section] = 0;

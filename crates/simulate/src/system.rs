@@ -256,6 +256,12 @@ impl<R: Real> System<R> {
         self.tape.states / self.variables - 1
     }
 
+    /// The switch whose argument is the function of a section.
+    pub(crate) fn switch_of(&self, section: usize) -> Option<usize> {
+        let row = self.sections[section];
+        self.switches.iter().position(|switch| switch.row == row && !switch.branch)
+    }
+
     /// The number of switches: different arguments of signs and absolute values.
     #[must_use]
     pub fn switches(&self) -> usize {

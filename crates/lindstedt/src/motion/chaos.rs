@@ -9,7 +9,7 @@ use lindstedt_equation::Expression;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
     Doubles, LyapunovExponent, LyapunovSettings, PoincareMap, Section, Settings, SimulateError,
-    Surface, ZeroOne, largest_lyapunov_exponent, zero_one,
+    Surface, ZeroOne, is_stationary, largest_lyapunov_exponent, zero_one,
 };
 use rug::Float;
 use serde::Serialize;
@@ -91,6 +91,8 @@ pub struct Test {
 pub struct ZeroOneTest {
     /// What is tested.
     pub series: &'static str,
+    /// Whether its two halves are alike, without which K says nothing.
+    pub stationary: bool,
     /// How the error is estimated.
     pub estimate: &'static str,
     /// One per m, from 1.
@@ -120,6 +122,10 @@ pub struct Diagnosis {
     /// In words.
     pub verdict: String,
 }
+
+/// What is tested where x itself wanders.
+const FORCED_STEPS: &str = "steps of x (which wanders) from one period of the force to the next";
+const STEPS: &str = "steps of x (which wanders) from one maximum to the next";
 
 impl Oscillator {
     /// The largest Lyapunov exponent and the 0-1 test of a motion, in doubles.
@@ -280,7 +286,17 @@ impl Run<'_> {
     }
 
     fn zero_one(&self) -> Result<ZeroOneTest, Error> {
-        let series = self.series()?;
+        let mut series = self.series()?;
+        let mut stationary = is_stationary(&series);
+        let mut name = if self.forced { "x once per period of the force" } else { "maxima of x" };
+        if !stationary {
+            // The angle of a pendulum that turns over wanders, its steps do not.
+            let steps: Vec<f64> = series.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            if is_stationary(&steps) {
+                (series, stationary, name) =
+                    (steps, true, if self.forced { FORCED_STEPS } else { STEPS });
+            }
+        }
         let mut k = Vec::new();
         for every in 1..=STRIDES {
             let thinned: Vec<f64> = series.iter().copied().step_by(every).collect();
@@ -295,7 +311,8 @@ impl Run<'_> {
             }
         }
         Ok(ZeroOneTest {
-            series: if self.forced { "x once per period of the force" } else { "maxima of x" },
+            series: name,
+            stationary,
             estimate: "median of K over 100 frequencies in doubles; error: half the distance of the \
                        quartiles; several bands look regular, so every 2nd, 3rd, 4th point is tested \
                        too",
@@ -308,7 +325,8 @@ impl Run<'_> {
         // The first test whose K is largest.
         let largest =
             test.and_then(|t| t.k.iter().rev().max_by(|a, b| a.found.k.total_cmp(&b.found.k)));
-        let test = largest.map(|test| self.of_test(test));
+        let stationary = test.is_none_or(|test| test.stationary);
+        let test = largest.map(|test| self.of_test(test, stationary));
         exponent.into_iter().chain(test).collect::<Vec<_>>().join("; ")
     }
 
@@ -339,9 +357,12 @@ impl Run<'_> {
         format!("{word}, largest Lyapunov exponent {decimal} +- {error}")
     }
 
-    fn of_test(&self, test: &Test) -> String {
+    fn of_test(&self, test: &Test, stationary: bool) -> String {
         let word = match test.found {
             _ if self.setup.linear => "says nothing of a linear equation, which is not chaotic",
+            ZeroOne { k, .. } if k >= 0.3 && !stationary => {
+                "undecided, the two halves of the series differ (a transient? --skip leaves it out)"
+            }
             // One wide distribution of K is no growth at all frequencies.
             ZeroOne { k, quartiles } if k > 0.8 && quartiles.0 > 0.5 => "chaotic",
             ZeroOne { k, .. } if k < 0.3 => "regular",

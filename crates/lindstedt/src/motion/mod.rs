@@ -12,6 +12,7 @@ mod chaos;
 mod diagram;
 pub(crate) mod equation;
 mod follow;
+mod force;
 pub(crate) mod growth;
 mod history;
 mod integrate;

@@ -1,8 +1,7 @@
 //! What is integrated: the equation for x itself with values, start, history and forcing.
 
-use super::equation::{
-    determined, friction, is_linear, linked, meaning, values, with_small, without_phases,
-};
+use super::equation::{determined, friction, is_linear, linked, meaning, values, with_small};
+use super::force::frequency;
 use super::history::{Evaluator, at_time, flying, free_flight, named};
 use super::orbit::{Orbit, recognised};
 use super::{Branch, Start};
@@ -13,7 +12,6 @@ use crate::{Error, Exact, Oscillator};
 use lindstedt_derivation::check_parameters;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Condition, Crossing, Expression, Impact, Problem};
-use lindstedt_expand::Excitation;
 use lindstedt_problem_file::History;
 use lindstedt_simulate::{Digits, Flow, Model, Parameters, Quantity, Real as _};
 use rug::{Float, Rational};
@@ -192,7 +190,7 @@ impl Case<'_> {
     /// earlier from the same state.
     fn on_orbit(&mut self, orbit: Orbit, perturbation: Option<&Rational>) -> Result<Begin, Error> {
         let advance = named(&mut self.parameters, "advance", orbit.advance.clone());
-        let mut held = flying(&self.equation).parameters();
+        let mut held = self.flying();
         held.extend(self.walls().flat_map(Expression::parameters));
         let tie = self.problem.synchronous.iter();
         held.extend(tie.flat_map(|t| [t.periods.to_string(), t.frequency.to_string()]));
@@ -289,7 +287,7 @@ impl Case<'_> {
                 (named(&mut self.parameters, "x", x), "x(t) = x(0) before t = 0")
             }
             History::FreeFlight => {
-                self.held = flying(&self.equation).parameters();
+                self.held = self.flying();
                 let parameters = &mut self.parameters;
                 let flight =
                     free_flight(&self.equation, &start, &self.small, self.bits, parameters)?;
@@ -305,15 +303,23 @@ impl Case<'_> {
         file.put_in(e).substitute(&|e| meaning(self.oscillator, e))
     }
 
+    /// The parameters of free flight.
+    fn flying(&self) -> Vec<String> {
+        let flying = flying(&self.equation);
+        let mut parameters = flying.parameters();
+        if flying.contains(&Expression::Small) {
+            parameters.push(self.small.clone());
+        }
+        parameters
+    }
+
     fn walls(&self) -> impl Iterator<Item = &Expression> {
         self.problem.impact.iter().flat_map(|wall| [&wall.position, &wall.restitution])
     }
 
     fn finished(mut self, begin: Begin, at: Vec<(String, String)>) -> Result<Setup, Error> {
-        let of = |small: Option<&str>| {
-            Excitation::of(&without_phases(&self.equation, small)).ok()?.frequency
-        };
-        let (frequency, detuned) = (of(None), of(Some(&self.small)));
+        let [frequency, detuned] =
+            [None, Some(&*self.small)].map(|small| frequency(&[&self.equation], small));
         let forcing = match &frequency {
             Some(frequency) => self.evaluator().period(frequency)?.map(Quantity::Float),
             None => None,

@@ -1,7 +1,8 @@
 //! Several unknowns in the time domain: no walls, no delays, a start of all of them.
 
 use super::Start;
-use super::equation::{meaning, values, with_small, without_phases};
+use super::equation::{meaning, values, with_small};
+use super::force::frequency;
 use super::history::Evaluator;
 use super::setup::Setup;
 use crate::refusal::Refused;
@@ -9,7 +10,6 @@ use crate::{Error, Exact, Oscillator};
 use lindstedt_derivation::check_parameters;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_expand::Excitation;
 use lindstedt_simulate::{Flow, Model, Parameters, Quantity};
 use rug::Rational;
 
@@ -42,7 +42,8 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
     });
     let others = state.split_off(2);
     let [x, v] = <[Quantity; 2]>::try_from(state).map_err(|_| Error::NoValue)?;
-    let [frequency, detuned] = [None, Some(&*small)].map(|small| frequency(&problem, small));
+    let equations: Vec<&Expression> = problem.equations().collect();
+    let [frequency, detuned] = [None, Some(&*small)].map(|small| frequency(&equations, small));
     let evaluator = Evaluator { parameters: &parameters, small: &small, bits: 256 };
     let period = frequency.as_ref().map(|frequency| evaluator.period(frequency)).transpose()?;
     let mut mentioned: Vec<String> = problem.equations().flat_map(|e| e.parameters()).collect();
@@ -93,12 +94,4 @@ fn state(
     let names = names.collect::<Vec<_>>().join(",");
     let message = format!("{} values of a state, but there are {states}: {names}", state.len());
     Err(Refused::usage("state", message, format!("--state {names}")).into())
-}
-
-/// The frequency of the forces, where all have the same.
-fn frequency(problem: &Problem, small: Option<&str>) -> Option<Expression> {
-    let of = |e: &Expression| Excitation::of(&without_phases(e, small)).ok()?.frequency;
-    let mut found = problem.equations().filter_map(of);
-    let first = found.next()?;
-    found.all(|other| other == first).then_some(first)
 }

@@ -1,6 +1,6 @@
 //! The 0-1 test on maps that are known to be regular or chaotic.
 
-use lindstedt_simulate::{go_on, zero_one};
+use lindstedt_simulate::{go_on, is_stationary, zero_one};
 
 fn logistic(r: f64, count: usize) -> Vec<f64> {
     let mut x = 0.3;
@@ -52,4 +52,19 @@ fn no_answer_without_data() {
     assert!(zero_one(&[1.0; 99], &go_on).is_none());
     assert!(zero_one(&[f64::NAN; 200], &go_on).is_none());
     assert!(zero_one(&[0.0; 200], &go_on).is_some());
+}
+
+/// cos(6 n/5 + n^2/8000) e^(-n/10000): a test of every point or of every m-th has K = 1 without chaos.
+#[test]
+fn a_slow_transient_is_no_stationary_series() {
+    let series = logistic(3.97, 3000);
+    assert!(is_stationary(&series) && is_stationary(&series[..300]));
+    let chirp = |n: u32| {
+        let n = f64::from(n);
+        (1.2 * n + n * n / 8000.0).cos() * (-n / 1e4).exp()
+    };
+    let transient: Vec<f64> = (0..2000).map(chirp).collect();
+    assert!(!is_stationary(&transient));
+    assert!(!is_stationary(&(0..2000).map(f64::from).collect::<Vec<_>>()));
+    assert!(is_stationary(&[1.0; 100]));
 }
