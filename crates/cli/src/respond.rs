@@ -14,7 +14,7 @@ pub struct RespondOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// The parameter that varies, in COUNT steps at least; two: folds and Hopf points in their plane; none: all states at the
+    /// The parameter that varies, in COUNT steps at least, with all states at up to 9 of them (3 of several unknowns) or at each of a list V1,V2,...; two: folds and Hopf points in their plane; none: all states at the
     /// values set.
     #[arg(long, value_name = "NAME=LO..HI[:COUNT]")]
     pub sweep: Vec<String>,

@@ -42,6 +42,12 @@ pub struct Oscillator {
 }
 
 impl Oscillator {
+    /// The same with another equation.
+    pub(crate) fn with_equation(mut self, equation: Expression) -> Self {
+        self.problem.equation = equation;
+        self
+    }
+
     /// The built-in oscillator of that name.
     ///
     /// # Errors

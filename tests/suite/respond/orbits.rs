@@ -190,6 +190,20 @@ fn a_near_resonance_is_said() {
     }
 }
 
+/// The response to a strong force is the state of rest: where the orders of its exponents grow, that is said. At eps = 1/5 they are
+/// -0.02 +- 0.2032 i (Newton and the monodromy matrix of the equation), and +- 59.3 i at order 2.
+#[test]
+fn exponents_of_rest_whose_orders_grow_are_doubted() {
+    let asked = |force: &str| {
+        let equation = "x'' + x + eps*(x'/5 + x^3) = F*cos(t/2)";
+        let case = Oscillator::parse(equation).unwrap().set("eps", "1/5").unwrap();
+        let case = case.set("F", force).unwrap();
+        let answer = case.respond(&to_order(2), &Work::default()).unwrap();
+        answer.remarks.iter().any(|it| it.0.contains("an order of the slow flow adds"))
+    };
+    assert_eq!(["4", "1/10"].map(asked), [true, false]);
+}
+
 /// An unknown at rest beside the internal resonance 1:1 is pumped by x^2 y: the exponents of the variational equation about the orbit
 /// of the full equation (Runge and Kutta, 300 steps a period) are positive for squares from 0.92 to 0.96. None of these is called
 /// stable; the leading order of the tongue has the growth to a tenth of eps.

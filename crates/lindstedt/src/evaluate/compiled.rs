@@ -44,6 +44,7 @@ impl Oscillator {
         question: &Evaluate,
         work: &Work,
     ) -> Result<Answer<FrequencyFunction>, Error> {
+        self.refuse_high_powers()?;
         let make = |varied: &Varied<'_>| {
             let order = question.order.unwrap_or_else(|| default_order(&varied.setting.form));
             FrequencyFunction::new(varied, order, question.method, work)
@@ -80,6 +81,7 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<SolutionFunction>, Error> {
         few_harmonics(harmonics)?;
+        self.refuse_high_powers()?;
         let make = |varied: &Varied<'_>| {
             let form = &varied.setting.form;
             let order = question.order.unwrap_or_else(|| default_solution_order(form));

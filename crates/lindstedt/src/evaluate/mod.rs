@@ -36,6 +36,7 @@ pub use prove::{
     ProvedState, UnknownOrbit, UnknownState, Verdict as ProofVerdict,
 };
 use rug::Rational;
+use rug::ops::Pow;
 use std::time::Instant;
 pub use sweep::{EvaluationSweep, RatesSweep, Swept, SweptPeriod, SweptPoint, SweptRates};
 pub use times::Times;
@@ -62,6 +63,9 @@ pub struct Evaluate {
     /// x(t) = X(omega t + phase), X(0) at rest.
     pub phase: Exact,
 }
+
+/// Powers of the small parameter from which they are put in.
+const HIGH_POWER: i64 = 3;
 
 impl Default for Evaluate {
     /// A quick order, the best method, no times, phase 0.
@@ -241,7 +245,10 @@ impl Oscillator {
     pub(crate) fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
         self.without_pi()?;
         self.check()?;
-        self.placed()
+        let (case, mut remarks) = self.placed()?;
+        let (case, remark) = case.with_powers_put_in();
+        remarks.extend(remark);
+        Ok((case, remarks))
     }
 
     /// The case with a value for a parameter that only counts orders, and with the amplitude that the
@@ -287,6 +294,50 @@ impl Oscillator {
             return self.clone();
         }
         self.clone().with(&problem.small, Exact::Rational(Rational::from(1)))
+    }
+
+    /// The highest power of the small parameter in the equation, where it is so high that a series to some order has few
+    /// terms in which it enters.
+    pub(crate) fn high_power(&self) -> Option<i64> {
+        let power = |e: &Expression| match e {
+            Expression::Power(base, n) if **base == Expression::Small => {
+                n.as_number()?.numer().to_i64().filter(|n| *n >= HIGH_POWER)
+            }
+            _ => None,
+        };
+        self.problem().equation.nodes().filter_map(power).max()
+    }
+
+    /// The same equation at this value q of the small parameter, with eps q^(k-1) for high powers eps^k: the estimates of
+    /// a series know nothing of a term that enters it once or twice, or not at all.
+    pub(crate) fn with_powers_put_in(self) -> (Self, Option<Remark>) {
+        let problem = self.problem();
+        let value = self.given().get(&*problem.small).and_then(Exact::as_rational).cloned();
+        let (Some(power), Some(value)) = (self.high_power(), value) else { return (self, None) };
+        let put_in = |e: &Expression| match e {
+            Expression::Power(base, n) if **base == Expression::Small => {
+                let n = n.as_number().filter(|n| n.is_integer())?.numer().to_u32()?;
+                let less = n.checked_sub(1).filter(|_| i64::from(n) >= HIGH_POWER)?;
+                Some(Expression::Small * Expression::Number(value.clone().pow(less)))
+            }
+            _ => None,
+        };
+        let equation = problem.equation.map(&put_in).canonical();
+        let remark = format!(
+            "{0}^{power} stands as {0} times a number, its value here: a series in {0} would have it too seldom to tell its error",
+            problem.small,
+        );
+        (self.with_equation(equation), Some(Remark(remark)))
+    }
+
+    /// Refuses functions of the small parameter whose series could not tell their error.
+    pub(crate) fn refuse_high_powers(&self) -> Result<(), Error> {
+        let Some(power) = self.high_power() else { return Ok(()) };
+        let small = &self.problem().small;
+        let message =
+            format!("a series in {small} has {small}^{power} too seldom to tell its error");
+        let hint = format!("`lindstedt evaluate` at values of {small}, or --sweep");
+        Err(Refused::no_answer("high-power", message, hint).into())
     }
 
     /// The problem with a value for everything.

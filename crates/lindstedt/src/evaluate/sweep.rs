@@ -135,7 +135,11 @@ impl Oscillator {
         let known = Known::default();
         self.over(columns, rows, work, |case, work| {
             let case = case.settled()?.0;
-            let found = case.period_of(case.setting()?.sharing(&known), question, work)?;
+            let setting = case.setting()?;
+            // With powers put in every value has an equation of its own.
+            let own = self.high_power().is_some();
+            let setting = if own { setting } else { setting.sharing(&known) };
+            let found = case.period_of(setting, question, work)?;
             let (period, frequency) = (found.period, found.frequency);
             let (exact_period, order, at) = (found.exact_period, found.order, found.at);
             Ok(SweptPeriod { period, frequency, exact_period, order, at })

@@ -389,7 +389,7 @@ fn missing(value: &Response) -> Vec<Remark> {
         remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
     }
     if value.no_closed_missing == Some(false) {
-        let text = "closed branches that lie between the values searched may be missing: more values find more";
+        let text = "closed branches that lie between the values searched may be missing: a list of values, --sweep NAME=V1,V2,..., is searched at each of them";
         remarks.push(Remark(text.to_owned()));
     }
     remarks

@@ -8,11 +8,17 @@ use lindstedt_evaluation::rotating::{order_sizes, start_error};
 use lindstedt_orbit::steady::System;
 use rug::Rational;
 
+/// The modulus at which the linear terms are compared that alone matter at rest.
+const NEAR_REST: f64 = 1e-9;
+
 impl Subject<'_> {
     /// The largest ratio of what an order adds to the slow flow at a state to what the order before adds, of those
     /// that add anything.
     pub(super) fn growth(&self, values: &Values, at: &[f64]) -> f64 {
-        let moduli: Vec<f64> = at.chunks_exact(2).map(|w| w[0].hypot(w[1])).collect();
+        let mut moduli: Vec<f64> = at.chunks_exact(2).map(|w| w[0].hypot(w[1])).collect();
+        if moduli.iter().all(|w| *w == 0.0) {
+            moduli.fill(NEAR_REST);
+        }
         let (turns, mut values) = (&self.rotating.turns, doubles(values));
         // The amplitude of a family is none of them.
         values.truncate(self.slow.system.symbols.len() + 1);
