@@ -6,10 +6,10 @@ use crate::verbs;
 use crate::work::Means;
 use lindstedt::evaluate::averaged;
 use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution, SolutionFunction};
-use lindstedt::grid::{Grid, Part};
+use lindstedt::grid::{Grid, Part, check_room};
 use lindstedt::motion::Bifurcation;
 use lindstedt::unstable::impact::map::Verdict;
-use lindstedt::{Answer, Error, Exact, Oscillator, Stability, Standing, Stop, Threshold};
+use lindstedt::{Answer, Error, Exact, Oscillator, Refused, Stability, Standing, Threshold, Work};
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -48,10 +48,12 @@ impl Frequency {
         py: Python<'py>,
         small: PyReadonlyArray1<'py, f64>,
         amplitude: PyReadonlyArray1<'py, f64>,
+        means: &Means,
     ) -> PyResult<Pair<'py>> {
         let (small, amplitude) = (small.as_slice()?, amplitude.as_slice()?);
-        let found = py.detach(|| self.0.value.list(small, amplitude, &Stop::default()));
-        Ok(pair(py, found))
+        let count = small.len().max(amplitude.len());
+        let list = |work: &Work| Ok(self.0.value.list(small, amplitude, &work.stop));
+        Ok(pair(py, means.list(py, count, list)?))
     }
 }
 
@@ -79,17 +81,25 @@ impl Motions {
         times: PyReadonlyArray1<'py, f64>,
         small: PyReadonlyArray1<'py, f64>,
         amplitude: PyReadonlyArray1<'py, f64>,
+        means: &Means,
     ) -> PyResult<Pair<'py>> {
         let (times, small) = (times.as_slice()?, small.as_slice()?);
         let amplitude = amplitude.as_slice()?;
-        let (values, errors) = py.detach(|| {
+        let (points, harmonics) = (small.len().max(amplitude.len()), self.0.value.harmonics + 1);
+        let each = harmonics.saturating_add(times.len());
+        let count = points.saturating_mul(harmonics).saturating_mul(each);
+        let (values, errors) = means.list(py, count, |work| {
+            check_room(points, each.saturating_mul(size_of::<Estimated>()), work)?;
             let (mut values, mut errors) = (Vec::new(), Vec::new());
-            for x in self.0.value.list(small, amplitude, &Stop::default()) {
-                values.append(&mut x.list(times, &Stop::default()));
+            for x in self.0.value.list(small, amplitude, &work.stop) {
+                values.append(&mut x.list(times, &work.stop));
                 errors.append(&mut x.errors(times));
+                if work.stop.asked() {
+                    break;
+                }
             }
-            (values, errors)
-        });
+            Ok((values, errors))
+        })?;
         Ok((values.into_pyarray(py), errors.into_pyarray(py)))
     }
 }
@@ -110,9 +120,11 @@ impl Motion {
         &self,
         py: Python<'py>,
         times: PyReadonlyArray1<'py, f64>,
+        means: &Means,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let times = times.as_slice()?;
-        let values = py.detach(|| self.0.value.list(times, &Stop::default()));
+        let count = times.len().saturating_mul(self.0.value.harmonics.len());
+        let values = means.list(py, count, |work| Ok(self.0.value.list(times, &work.stop)))?;
         Ok(values.into_pyarray(py))
     }
 
@@ -121,9 +133,10 @@ impl Motion {
         &self,
         py: Python<'py>,
         times: PyReadonlyArray1<'py, f64>,
+        means: &Means,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let times = times.as_slice()?;
-        let errors = py.detach(|| self.0.value.errors(times));
+        let errors = means.list(py, times.len(), |_| Ok(self.0.value.errors(times)))?;
         Ok(errors.into_pyarray(py))
     }
 }
@@ -143,7 +156,8 @@ impl Averaged {
         written(&self.0)
     }
 
-    /// Row by row the values and errors of a, psi, x; the times in increasing order. What is not reached is no number.
+    /// Row by row the values and errors of a, psi, x; the times in increasing order. What the motion does not reach is no
+    /// number; stopped work has none.
     fn at<'py>(
         &self,
         py: Python<'py>,
@@ -158,6 +172,9 @@ impl Averaged {
                 times.iter().map(exact).collect::<Option<_>>().ok_or_else(missing)?;
             let mut motion = self.0.value.clone();
             let moments = motion.at(&times, work);
+            if work.stop.asked() {
+                return Err(Refused::stopped("stopped before all times were reached", "").into());
+            }
             // Those that are not reached are left out.
             let mut moments = moments.iter().peekable();
             let row = |time: &Exact| {

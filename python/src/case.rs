@@ -190,11 +190,13 @@ impl Case {
         })
     }
 
-    /// The number of values of every axis of a sweep.
-    fn counts(&self, py: Python<'_>, sweep: &str) -> PyResult<Vec<usize>> {
-        let count = |text: &str| self.0.axis(text).map(|axis| axis.values.len());
-        let counts: Result<_, Error> = sweep.split(';').map(count).collect();
-        counts.map_err(|error| exception(py, &error))
+    /// The values of every axis of a sweep.
+    fn axes(&self, py: Python<'_>, sweep: &str) -> PyResult<Vec<Vec<String>>> {
+        let values = |text: &str| -> Result<_, Error> {
+            Ok(self.0.axis(text)?.values.iter().map(ToString::to_string).collect())
+        };
+        let axes: Result<_, Error> = sweep.split(';').map(values).collect();
+        axes.map_err(|error| exception(py, &error))
     }
 
     /// A chart, a surface or a diagram as arrays.

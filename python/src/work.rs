@@ -1,17 +1,22 @@
 //! How a question is worked on: on a thread of its own, with Ctrl-C, a limit in time, and progress.
 
 use crate::failure::{exception, usage};
-use lindstedt::{Error, Progress, Stop, Work};
+use lindstedt::{Error, Progress, Refused, Stop, Work};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Between two looks at the signals.
 const TICK: Duration = Duration::from_millis(20);
 /// The stack of the thread that works: that of a program's first one.
 const STACK: usize = 8 << 20;
+/// So many numbers take no longer than that.
+const FEW: usize = 100_000;
+
+/// The process that first asked something.
+static PROCESS: OnceLock<u32> = OnceLock::new();
 
 /// Digits, memory, time, and whom to tell.
 #[pyclass(frozen, module = "lindstedt._native")]
@@ -25,6 +30,8 @@ pub struct Means {
 
 #[pymethods]
 impl Means {
+    /// Refuses a process that was forked off one that worked: its threads are not there, and it would wait for them for
+    /// ever.
     #[new]
     #[pyo3(signature = (digits=30, doubles=false, memory=8 << 30, seconds=None, progress=None))]
     fn new(
@@ -35,6 +42,12 @@ impl Means {
         seconds: Option<f64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
+        let own = std::process::id();
+        if *PROCESS.get_or_init(|| own) != own {
+            let message = "this process was forked off one in which lindstedt had worked";
+            let refused = Refused::usage("fork", message, "multiprocessing with \"spawn\"");
+            return Err(exception(py, &refused.into()));
+        }
         if let Some(seconds) = seconds.filter(|seconds| seconds.is_nan() || *seconds < 0.0) {
             let message = format!("seconds = {seconds} is no limit");
             return Err(exception(py, &usage(message, "a number from 0 up, or nothing")));
@@ -54,6 +67,24 @@ fn told(progress: &Progress) -> Told {
 }
 
 impl Means {
+    /// Asks for so many numbers, all of them or none.
+    pub fn list<T: Send>(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        question: impl FnOnce(&Work) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        if count <= FEW {
+            let found = py.detach(|| question(&Work::default()));
+            return found.map_err(|error| exception(py, &error));
+        }
+        self.ask(py, |work| {
+            let found = question(work)?;
+            let stopped = || Refused::stopped("stopped before all values were there", "");
+            if work.stop.asked() { Err(stopped().into()) } else { Ok(found) }
+        })
+    }
+
     /// Asks a question without the interpreter's lock.
     pub fn ask<T: Send>(
         &self,

@@ -1,8 +1,11 @@
 //! Why an expansion has no value.
 
+use lindstedt_algebra::Stop;
 use lindstedt_derivation::DerivationError;
+use lindstedt_equation::Problem;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::NumberError;
+use lindstedt_series::resummation::ResummationError;
 use thiserror::Error;
 
 /// Why an expansion has no value at the parameters given.
@@ -31,7 +34,17 @@ pub enum EvaluationError {
         problem: String,
         /// Why.
         #[source]
-        reason: lindstedt_series::resummation::ResummationError,
+        reason: ResummationError,
+    },
+    /// The weights and sums of so many phases would need more memory than allowed.
+    #[error("{phases} phases need {} MiB, the limit is {} MiB", needed >> 20, limit >> 20)]
+    TooManyPhases {
+        /// Those that no symmetry takes to each other.
+        phases: usize,
+        /// Bytes.
+        needed: u64,
+        /// The same.
+        limit: u64,
     },
     /// Newton's method found no amplitude and phase for the state asked for.
     #[error(
@@ -59,6 +72,19 @@ pub enum EvaluationError {
         /// The amplitude.
         amplitude: String,
     },
+}
+
+impl EvaluationError {
+    /// Why there is no value at some phase: there is none, or the work was stopped.
+    pub(crate) fn without_value(problem: &Problem, stop: &Stop) -> Self {
+        match stop.asked() {
+            true => Self::Resummation {
+                problem: problem.name.to_string(),
+                reason: ResummationError::Stopped,
+            },
+            false => DerivationError::NoValue.into(),
+        }
+    }
 }
 
 impl From<ExpandError> for EvaluationError {

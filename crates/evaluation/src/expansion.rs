@@ -10,10 +10,10 @@ use crate::compiled::Varied;
 use crate::error::EvaluationError as Error;
 use crate::phases::{Phases, left_out};
 use crate::source::Source;
-use lindstedt_derivation::{DerivationError, Work};
+use lindstedt_algebra::Stop;
+use lindstedt_derivation::Work;
 use lindstedt_equation::AmplitudeRole;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_series::resummation::ResummationError;
 
 /// Harmonics of which a fourth of the phases is one more, at least.
 const FEWEST: usize = 32;
@@ -79,25 +79,19 @@ impl Expansion {
         let source = Source::new(setting, order, (work.memory, &work.stop), &mut observer)?;
         let derivation = setting.derive(order, (work.memory, &work.stop), &mut observer)?;
         let balls = Balls::new(BITS).with_guard(64);
-        // What is stopped has no coefficients.
-        let no_value = || match work.stop.asked() {
-            true => Error::Resummation {
-                problem: setting.problem.name.to_string(),
-                reason: ResummationError::Stopped,
-            },
-            false => DerivationError::NoValue.into(),
-        };
+        let no_value = || Error::without_value(&setting.problem, &work.stop);
         let functions = derivation.phase_functions(false, balls).ok_or_else(no_value)?;
-        let at = |point: &_| if work.stop.asked() { None } else { functions.at(point) };
+        let sampled = |count: usize| {
+            let phases = Phases::new(count, balls, &work.stop, |point| functions.at(point))?;
+            polynomials(&phases, balls, &work.stop)
+        };
         let fewest = 4 * (harmonics + 1).max(FEWEST);
-        let mut phases = Phases::new(fewest, balls, at).ok_or_else(no_value)?;
-        let [mut cosines, mut sines] = polynomials(&phases, balls);
+        let [mut cosines, mut sines] = sampled(fewest).ok_or_else(no_value)?;
         for count in (1..=DOUBLINGS).map(|k| fewest << k) {
             if folded(&cosines, &sines, order).iter().all(|error| *error == 0.0) {
                 break;
             }
-            phases = Phases::new(count, balls, at).ok_or_else(no_value)?;
-            [cosines, sines] = polynomials(&phases, balls);
+            [cosines, sines] = sampled(count).ok_or_else(no_value)?;
         }
         let folded = folded(&cosines, &sines, order);
         let size = |n: usize, from: usize| -> f64 {
@@ -144,10 +138,10 @@ fn period(source: &Source) -> Option<Vec<f64>> {
     Some(trimmed(period))
 }
 
-/// c_kn and s_kn, k < M/2, as balls before they are rounded: 1/32 is 1/32.
-fn polynomials(phases: &Phases, balls: Balls) -> [Vec<Vec<f64>>; 2] {
+/// c_kn and s_kn, k < M/2, as balls before they are rounded: 1/32 is 1/32. Nothing when stopped.
+fn polynomials(phases: &Phases, balls: Balls, stop: &Stop) -> Option<[Vec<Vec<f64>>; 2]> {
     let orders = phases.distinct.first().map_or(0, |(_, list)| list.len());
-    phases.exact_weights(balls).map(|rows| {
+    let [cosines, sines] = phases.exact_weights(balls, stop)?.map(|rows| {
         let at = |row: &Vec<Ball>, n: usize| {
             let products = row
                 .iter()
@@ -158,8 +152,10 @@ fn polynomials(phases: &Phases, balls: Balls) -> [Vec<Vec<f64>>; 2] {
                 .midpoint()
                 .to_f64()
         };
-        rows.iter().map(|row| (0..orders).map(|n| at(row, n)).collect()).collect()
-    })
+        let numbers = |row: Vec<Ball>| (0..orders).map(|n| at(&row, n)).collect();
+        rows.map(|row| (!stop.asked()).then(|| numbers(row))).collect::<Option<_>>()
+    });
+    Some([cosines?, sines?])
 }
 
 /// Of every order a bound of what harmonics beyond those that the phases tell fold onto them; zero where the last ones are

@@ -5,6 +5,7 @@
 //! exact but for the harmonics beyond M/2, each phase once that no symmetry takes to another. M is a multiple of 4, so that
 //! harmonics that fold onto lower ones keep their parity.
 
+use lindstedt_algebra::Stop;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::lobachevsky_function::Point;
 use rug::Rational;
@@ -44,14 +45,19 @@ pub(crate) struct Phases {
 }
 
 impl Phases {
+    /// Nothing when stopped, or where a phase has no value.
     pub fn new(
         count: usize,
         balls: Balls,
+        stop: &Stop,
         at: impl Fn(&Point) -> Option<Vec<Ball>>,
     ) -> Option<Self> {
         let (mut distinct, mut images): (Vec<(Point, Vec<Ball>)>, Vec<_>) =
             (Vec::new(), Vec::new());
         for i in 0..count {
+            if stop.asked() {
+                return None;
+            }
             let point = Point::PiTimes(Rational::from((2 * i as u64 + 1, count as u64)));
             let list = at(&point)?;
             let negative: Vec<Ball> = list.iter().map(|c| balls.neg(c)).collect();
@@ -83,14 +89,25 @@ impl Phases {
         all.sum::<f64>() / self.images.len() as f64
     }
 
-    /// The weights of [`Self::weights`] as balls, of c_k, then of s_k.
-    pub fn exact_weights(&self, balls: Balls) -> [Vec<Vec<Ball>>; 2] {
+    /// The weights of [`Self::weights`] as balls; nothing when stopped.
+    pub fn exact_weights(
+        &self,
+        balls: Balls,
+        stop: &Stop,
+    ) -> Option<[impl Iterator<Item = Vec<Ball>>; 2]> {
         let count = self.images.len();
         let turn =
             |j: usize| balls.mul_rational(&balls.pi(), &Rational::from((j as u64, count as u64)));
-        let angles: Vec<Ball> = (0..2 * count).map(turn).collect();
+        let (mut cosines, mut sines) = (Vec::new(), Vec::new());
+        for angle in (0..2 * count).map(turn) {
+            if stop.asked() {
+                return None;
+            }
+            cosines.push(balls.cos(&angle));
+            sines.push(balls.sin(&angle));
+        }
         let rows = |table: Vec<Ball>| {
-            let row = |k: usize| {
+            let row = move |k: usize| {
                 let weight = Rational::from((if k == 0 { 1 } else { 2 }, count as u64));
                 let mut row = vec![balls.zero(); self.distinct.len()];
                 for (i, (index, sign)) in self.images.iter().enumerate() {
@@ -100,32 +117,30 @@ impl Phases {
                 }
                 row.iter().map(|sum| balls.mul_rational(sum, &weight)).collect()
             };
-            (0..count / 2).map(row).collect()
+            (0..count / 2).map(row)
         };
-        [
-            angles.iter().map(|a| balls.cos(a)).collect(),
-            angles.iter().map(|a| balls.sin(a)).collect(),
-        ]
-        .map(rows)
+        Some([cosines, sines].map(rows))
     }
 
-    /// The weights of the distinct phases in c_k and s_k, k < M/2.
-    pub fn weights(&self) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    /// The weights of the distinct phases in c_k, then in s_k, row by row, k < M/2.
+    pub fn weights(&self) -> [impl Iterator<Item = Vec<f64>>; 2] {
         let count = self.images.len();
-        let row = |k: usize, of: fn(f64) -> f64| {
-            let mut row = vec![0.0; self.distinct.len()];
-            let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
-            for (i, (index, sign)) in self.images.iter().enumerate() {
-                // Reduced before it is rounded.
-                let turns = (k * (2 * i + 1)) % (2 * count);
-                row[*index] +=
-                    sign * weight * of(turns as f64 * std::f64::consts::PI / count as f64);
-            }
-            // Weights that cancel.
-            row.iter_mut().filter(|w| w.abs() < ROUNDING).for_each(|w| *w = 0.0);
-            row
+        let rows = |of: fn(f64) -> f64| {
+            let angle = |turns: usize| turns as f64 * std::f64::consts::PI / count as f64;
+            let table: Vec<f64> = (0..2 * count).map(|turns| of(angle(turns))).collect();
+            let row = move |k: usize| {
+                let mut row = vec![0.0; self.distinct.len()];
+                let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
+                for (i, (index, sign)) in self.images.iter().enumerate() {
+                    // Reduced before it is rounded.
+                    row[*index] += sign * weight * table[(k * (2 * i + 1)) % (2 * count)];
+                }
+                // Weights that cancel.
+                row.iter_mut().filter(|w| w.abs() < ROUNDING).for_each(|w| *w = 0.0);
+                row
+            };
+            (0..count / 2).map(row)
         };
-        let rows = |of| (0..count / 2).map(|k| row(k, of)).collect();
-        (rows(f64::cos), rows(f64::sin))
+        [rows(f64::cos), rows(f64::sin)]
     }
 }

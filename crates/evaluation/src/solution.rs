@@ -332,11 +332,13 @@ impl Trajectory {
     /// The Fourier coefficients (c_k, s_k), k = 0 .. `harmonics`, of x as a function of
     /// omega t, by the trapezoidal rule on 4 (harmonics + 1) phases, 64 at least, each sum once that a symmetry
     /// takes to another phase; and what the harmonics beyond them add at most, as far as these phases show it.
+    /// Nothing where a phase has no value, and when stopped.
     #[must_use]
     pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
         let count = (4 * (harmonics + 1)).max(FEWEST_NODES);
         let balls = Balls::new(bits_for(self.digits)).with_guard(64);
-        let phases = Phases::new(count, balls, |point| self.coefficients(point, balls))?;
+        let phases =
+            Phases::new(count, balls, &self.stop, |point| self.coefficients(point, balls))?;
         let sum = |(point, _): &(Point, _)| {
             let (value, error) = self.sum(point)?;
             let value = value.midpoint().to_f64();
@@ -346,11 +348,13 @@ impl Trajectory {
         let error_of = |error: f64| if self.is_estimated { error } else { f64::INFINITY };
         let errors = || sums.iter().map(|(_, error)| error_of(*error));
         let largest_error = errors().fold(0.0, f64::max);
-        let (cosines, sines) = phases.weights();
-        let of =
-            |weights: &[f64]| weights.iter().zip(&sums).map(|(weight, (x, _))| weight * x).sum();
-        let mut list: Vec<(f64, f64)> =
-            cosines.iter().zip(&sines).map(|(c, s)| (of(c), of(s))).collect();
+        let [cosines, sines] = phases.weights();
+        let of = |weights: Vec<f64>| -> Option<f64> {
+            let products = weights.iter().zip(&sums).map(|(weight, (x, _))| weight * x);
+            (!self.stop.asked()).then(|| products.sum())
+        };
+        let both = cosines.zip(sines).map(|(c, s)| of(c).zip(of(s)));
+        let mut list: Vec<(f64, f64)> = both.collect::<Option<_>>()?;
         let rounding = ROUNDING * list.iter().map(|(c, s)| c.hypot(*s)).sum::<f64>();
         let noise = if largest_error.is_finite() { largest_error.max(rounding) } else { rounding };
         let deviation = left_out(&list, harmonics, noise);

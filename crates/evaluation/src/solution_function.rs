@@ -13,7 +13,7 @@ use crate::fourier::Fourier;
 use crate::periodic::PeriodicSolution;
 use crate::phases::{Phases, left_out};
 use lindstedt_algebra::Stop;
-use lindstedt_derivation::{DerivationError, Work};
+use lindstedt_derivation::Work;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::resummation::{Compiled, Estimated, Method, Sample, UniformMap};
 use rayon::prelude::*;
@@ -23,6 +23,9 @@ use serde::{Serialize, Serializer};
 
 /// S over the largest |x_0|.
 const OFFSET: f64 = 4.0;
+/// Bytes of the sum at one phase: some 40 factors of two with 16 nodes each, of two signs.
+const SUM: usize = 1 << 16;
+
 /// x(t; small, amplitude) in doubles.
 #[derive(Clone, Debug)]
 pub struct SolutionFunction {
@@ -47,7 +50,7 @@ impl SolutionFunction {
     ///
     /// # Errors
     /// Those of [`FrequencyFunction::new`] and [`lindstedt_derivation::derive()`];
-    /// [`Error::Resummation`] where no method has a formula. A method that does not sum x is that of the frequency alone.
+    /// [`Error::Resummation`] where no method has a formula; [`Error::TooManyPhases`]. A method that does not sum x is that of the frequency alone.
     pub fn new(
         varied: &Varied<'_>,
         (order, harmonics): (usize, usize),
@@ -60,9 +63,14 @@ impl SolutionFunction {
         let derivation = setting.derive(order, (work.memory, &work.stop), &mut observer)?;
         let bits = Compiled::bits(order + 1);
         let balls = Balls::new(bits).with_guard(64);
-        let functions = derivation.phase_functions(false, balls).ok_or(DerivationError::NoValue)?;
-        let phases = Phases::new(4 * (harmonics + 1), balls, |point| functions.at(point));
-        let phases = phases.ok_or(DerivationError::NoValue)?;
+        let no_value = || Error::without_value(&setting.problem, &work.stop);
+        let functions = derivation.phase_functions(false, balls).ok_or_else(no_value)?;
+        let count = 4 * (harmonics + 1);
+        // At least a fourth of the phases is left by two symmetries.
+        check_room(count, count / 4, work.memory)?;
+        let phases = Phases::new(count, balls, &work.stop, |point| functions.at(point));
+        let phases = phases.ok_or_else(no_value)?;
+        check_room(count, phases.distinct.len(), work.memory)?;
         let methods = match method {
             Some(
                 method
@@ -89,7 +97,11 @@ impl SolutionFunction {
             problem: setting.problem.name.to_string(),
             reason,
         })?;
-        let (cosines, sines) = phases.weights();
+        let [cosines, sines] = phases.weights().map(|rows| {
+            let rows = rows.map(|row| (!work.stop.asked()).then_some(row));
+            rows.collect::<Option<Vec<_>>>().ok_or_else(no_value)
+        });
+        let (cosines, sines) = (cosines?, sines?);
         let amplitude = setting.amplitude.ball(Balls::new(64)).midpoint().to_f64();
         Ok(Self { frequency, order, harmonics, sums, offset, cosines, sines, amplitude })
     }
@@ -129,6 +141,13 @@ impl SolutionFunction {
         let found: Vec<_> = (0..count).into_par_iter().map(one).collect();
         found.into_iter().map_while(|solution| solution).collect()
     }
+}
+
+/// Refuses so many distinct ones of `count` phases where their sums and weights need more memory than there is.
+fn check_room(count: usize, phases: usize, limit: u64) -> Result<(), Error> {
+    let each = count.saturating_mul(size_of::<f64>()).saturating_add(SUM);
+    let needed = phases.saturating_mul(each) as u64;
+    if needed <= limit { Ok(()) } else { Err(Error::TooManyPhases { phases, needed, limit }) }
 }
 
 /// As JSON the parameters that vary, the methods of the frequency and the harmonics.

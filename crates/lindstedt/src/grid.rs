@@ -159,7 +159,10 @@ impl FromStr for Axis {
 }
 
 /// Refuses points of so many bytes that need more than twice the memory there is.
-pub(crate) fn check_room(points: usize, bytes: usize, work: &Work) -> Result<(), Error> {
+///
+/// # Errors
+/// [`Refused`] with what they need.
+pub fn check_room(points: usize, bytes: usize, work: &Work) -> Result<(), Error> {
     let needed = points.saturating_mul(bytes) as u64;
     if needed / 2 <= work.memory {
         return Ok(());

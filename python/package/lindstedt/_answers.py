@@ -10,7 +10,7 @@ from typing import Any
 
 from ._errors import NoAnswerError, UsageError
 from ._native import Found
-from ._numbers import Number, Series, read
+from ._numbers import Number, Series, read, shown
 
 _FORMATS = ("text", "latex", "markdown", "html")
 
@@ -101,8 +101,8 @@ class Answer:
 
     def page(self, format: str = "text") -> str:
         """The answer as a page: text, latex, markdown or html."""
-        if format not in _FORMATS:
-            raise UsageError(f"there is no format {format!r}", "usage", ", ".join(_FORMATS))
+        if not isinstance(format, str) or format not in _FORMATS:
+            raise UsageError(f"there is no format {shown(format)}", "usage", ", ".join(_FORMATS))
         return self._form(format) or ""
 
     def __str__(self) -> str:

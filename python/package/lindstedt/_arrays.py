@@ -4,32 +4,45 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import UsageError
-from ._native import Means
-from ._numbers import Number, Value, exact
+from ._means import limited
+from ._numbers import Number, Value, each, exact, several, shown
 
 if TYPE_CHECKING:
     from ._answers import Answer
     from ._oscillator import Oscillator
 
 Doubles = NDArray[numpy.float64]
+Real = Union[float, Fraction, Decimal]
+Points = Union[ArrayLike, Real, Sequence[Real], Sequence[Sequence[Real]]]
+"""What an array of doubles is made of."""
 
 
-def _doubles(values: ArrayLike) -> Doubles:
+def _doubles(values: Points) -> Doubles:
     try:
-        return numpy.asarray(values, dtype=numpy.float64)
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"{values!r} is no array of doubles: {error}", "value", "floats; exact values go into set()") from None
+        array = numpy.asarray(values)
+        if array.dtype == numpy.float64:
+            return array
+        if array.dtype.kind == "O" and any(item is None or isinstance(item, (bool, str)) for item in array.flat):
+            raise TypeError("not all are numbers")
+        # Complex numbers and dates would lose a part.
+        if array.dtype.kind not in "iufO":
+            raise TypeError(f"{array.dtype} are no real numbers")
+        return array.astype(numpy.float64, copy=False)
+    except (TypeError, ValueError, ArithmeticError) as error:
+        hint = "floats; exact values go into set()"
+        raise UsageError(f"{shown(values)} is no array of doubles: {error}", "value", hint) from None
 
 
-def _flat(values: ArrayLike) -> Doubles:
+def _flat(values: Points) -> Doubles:
     return numpy.ascontiguousarray(_doubles(values)).ravel()
 
 
@@ -48,6 +61,15 @@ class _Made:
         names = ", ".join(self.data.get("parameters", []))
         return f"<{type(self).__name__} of {self._from[0]!r}{' over ' if names else ''}{names}>"
 
+    def _displaced(self, times: Any, digits: int, limits: dict[str, float], **values: Value) -> list[dict[str, Any]]:
+        """The motion at times, by `evaluate`."""
+        times = each(times)
+        if not times:
+            return []
+        found = self._evaluated(digits, {"times": times, **limits}, **values)
+        points: list[dict[str, Any]] = found["solution"]["values"]
+        return points
+
     def _evaluated(self, digits: int, options: dict[str, Any], **values: Any) -> Answer:
         """The answer of `evaluate` to so many digits with the same options."""
         oscillator, _, made = self._from
@@ -57,11 +79,6 @@ class _Made:
 
 def _again(oscillator: Oscillator, name: str, options: dict[str, Any]) -> Any:
     return getattr(oscillator, name)(**options)
-
-
-def _listed(times: ArrayLike) -> str:
-    """Times as `evaluate` takes them."""
-    return "".join(exact(float(t)) + "," for t in numpy.ravel(times))
 
 
 class _OfParameters(_Made):
@@ -79,7 +96,7 @@ class _OfParameters(_Made):
         amplitude: float | None = self._native.amplitude
         return amplitude
 
-    def _amplitude(self, amplitude: ArrayLike | None) -> ArrayLike:
+    def _amplitude(self, amplitude: Points | None) -> Points:
         varies = "amplitude" in self.parameters
         if amplitude is not None and not varies:
             raise UsageError(
@@ -94,11 +111,11 @@ class _OfParameters(_Made):
     def _values(self, small: Value, amplitude: Value | None) -> dict[str, Value]:
         """The values of one point as they are set."""
         if amplitude is not None:
-            self._amplitude(float(Fraction(exact(amplitude))))
+            self._amplitude(amplitude)
         values: dict[str, Value] = {self.parameters[0]: small}
         return values if amplitude is None else {**values, "amplitude": amplitude}
 
-    def _points(self, small: ArrayLike, amplitude: ArrayLike | None) -> tuple[Doubles, Doubles]:
+    def _points(self, small: Points, amplitude: Points | None) -> tuple[Doubles, Doubles]:
         first, second = _doubles(small), _doubles(self._amplitude(amplitude))
         if second.ndim:
             try:
@@ -111,72 +128,74 @@ class _OfParameters(_Made):
 class FrequencyFunction(_OfParameters):
     """omega over the small parameter and, where a scaling carries it, the amplitude: derived once, then some
     0.2 microseconds per point and core. Doubles, each with its estimated error. An amplitude that is not given is
-    the oscillator's; where it does not vary, none is taken."""
+    the oscillator's; where it does not vary, none is taken. Limits are `seconds` and `memory`."""
 
-    def at(self, small: Value, amplitude: Value | None = None, digits: int = 30) -> Number:
+    def at(self, small: Value, amplitude: Value | None = None, digits: int = 30, **limits: float) -> Number:
         """omega at one point to so many digits, with its error: by `evaluate`."""
-        found: Number = self._evaluated(digits, {}, **self._values(small, amplitude))["frequency"]
+        found: Number = self._evaluated(digits, limits, **self._values(small, amplitude))["frequency"]
         return found
 
     def at_each(
-        self, small: Sequence[Value] | Doubles, amplitude: Value | None = None, digits: int = 30
+        self, small: Sequence[Value] | Doubles, amplitude: Value | None = None, digits: int = 30, **limits: float
     ) -> list[Number | None]:
         """omega at many values of the small parameter to so many digits, each with its error, derived once: by the sweep of
         `evaluate`. None where the sum has not one digit."""
-        if len(small) == 0:
-            return []
-        values = self._values(small[0], amplitude)
         name = self.parameters[0]
+        points = several(small, name)
+        if not points:
+            return []
+        values = self._values(points[0], amplitude)
         del values[name]
-        found = self._evaluated(digits, {"sweep": {name: list(small)}}, **values)
+        found = self._evaluated(digits, {"sweep": {name: points}, **limits}, **values)
         return [point.get("frequency") for point in found["points"]]
 
-    def with_error(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> tuple[Doubles, Doubles]:
+    def with_error(
+        self, small: Points, amplitude: Points | None = None, **limits: float
+    ) -> tuple[Doubles, Doubles]:
         """omega and its estimated errors, infinite where the sum has not one digit."""
         first, second = self._points(small, amplitude)
-        values, errors = self._native.at(_flat(first), _flat(second))
+        values, errors = self._native.at(_flat(first), _flat(second), limited(limits))
         return values.reshape(first.shape), errors.reshape(first.shape)
 
-    def __call__(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> Doubles:
-        values, errors = self.with_error(small, amplitude)
+    def __call__(self, small: Points, amplitude: Points | None = None, **limits: float) -> Doubles:
+        values, errors = self.with_error(small, amplitude, **limits)
         return numpy.where(numpy.isfinite(errors), values, numpy.nan)
 
 
 class SolutionFunction(_OfParameters):
     """x(t) over the small parameter and, where a scaling carries it, the amplitude: derived once, then some 5
-    microseconds per point and 20 to 50 nanoseconds per time and core. Doubles, each with its estimated error."""
+    microseconds per point and 20 to 50 nanoseconds per time and core. Doubles, each with its estimated error. Limits are
+    `seconds` and `memory`."""
 
-    def at(self, times: ArrayLike, small: Value, amplitude: Value | None = None, digits: int = 30) -> list[Number]:
+    def at(
+        self, times: Points | Value, small: Value, amplitude: Value | None = None, digits: int = 30, **limits: float
+    ) -> list[Number]:
         """x at times and one point to so many digits, each with its error: by `evaluate`."""
-        if not numpy.size(times):
-            return []
-        found = self._evaluated(digits, {"times": _listed(times)}, **self._values(small, amplitude))
-        return [point["x"] for point in found["solution"]["values"]]
+        return [point["x"] for point in self._displaced(times, digits, limits, **self._values(small, amplitude))]
 
     def with_error(
-        self, times: ArrayLike, small: ArrayLike, amplitude: ArrayLike | None = None
+        self, times: Points, small: Points, amplitude: Points | None = None, **limits: float
     ) -> tuple[Doubles, Doubles]:
         """x and its estimated errors, infinite where nothing is known: at every point of the parameters all times, in the
         shape of the parameters followed by that of the times."""
         first, second = self._points(small, amplitude)
-        shape = first.shape + numpy.shape(times)
-        values, errors = self._native.at(_flat(times), _flat(first), _flat(second))
+        times = _doubles(times)
+        shape = first.shape + times.shape
+        values, errors = self._native.at(_flat(times), _flat(first), _flat(second), limited(limits))
         return values.reshape(shape), errors.reshape(shape)
 
-    def __call__(self, times: ArrayLike, small: ArrayLike, amplitude: ArrayLike | None = None) -> Doubles:
-        values, errors = self.with_error(times, small, amplitude)
+    def __call__(self, times: Points, small: Points, amplitude: Points | None = None, **limits: float) -> Doubles:
+        values, errors = self.with_error(times, small, amplitude, **limits)
         return numpy.where(numpy.isfinite(errors), values, numpy.nan)
 
 
 class Solution(_Made):
-    """x(t) by its harmonics: call it with an array of times. It is no number where its error is more than the motion."""
+    """x(t) by its harmonics: call it with an array of times. It is no number where its error is more than the motion.
+    Limits are `seconds` and `memory`."""
 
-    def at(self, times: ArrayLike, digits: int = 30) -> list[Number]:
+    def at(self, times: Points | Value, digits: int = 30, **limits: float) -> list[Number]:
         """x at times to so many digits, each with its error: by `evaluate`."""
-        if not numpy.size(times):
-            return []
-        found = self._evaluated(digits, {"times": _listed(times)})
-        return [point["x"] for point in found["solution"]["values"]]
+        return [point["x"] for point in self._displaced(times, digits, limits)]
 
     @property
     def frequency(self) -> float:
@@ -193,19 +212,21 @@ class Solution(_Made):
         """(c_k, s_k), k = 0, 1, ..., of c_k cos(k omega t) + s_k sin(k omega t)."""
         return numpy.array(self.data["harmonics"])
 
-    def __call__(self, times: ArrayLike) -> Doubles:
-        flat = _flat(times)
-        values: Doubles = self._native.at(flat)
+    def __call__(self, times: Points, **limits: float) -> Doubles:
+        times = _doubles(times)
+        flat, means = _flat(times), limited(limits)
+        values: Doubles = self._native.at(flat, means)
         # The error grows with |t|: what the two ends know, all know.
         ends = [flat.min(), flat.max()] if flat.size else []
-        if not numpy.isfinite(self._native.errors(_flat(ends))).all():
-            values[~numpy.isfinite(self._native.errors(flat))] = numpy.nan
-        return values.reshape(numpy.shape(times))
+        if not numpy.isfinite(self._native.errors(_flat(ends), means)).all():
+            values[~numpy.isfinite(self._native.errors(flat, means))] = numpy.nan
+        return values.reshape(times.shape)
 
-    def error(self, times: ArrayLike) -> Doubles:
+    def error(self, times: Points, **limits: float) -> Doubles:
         """The estimated error at times: it grows with t by what omega is wrong by, and is infinite where x is not known."""
-        errors: Doubles = self._native.errors(_flat(times))
-        return errors.reshape(numpy.shape(times))
+        times = _doubles(times)
+        errors: Doubles = self._native.errors(_flat(times), limited(limits))
+        return errors.reshape(times.shape)
 
     def to_callable(self) -> Callable[[float], float]:
         """x as a function of one time, for comparisons with `scipy.integrate.solve_ivp`."""
@@ -224,27 +245,26 @@ class Solution(_Made):
 
 
 class AveragedSolution(_Made):
-    """a(t), psi(t) and x(t) of an averaged motion: derived once, integrated at every call from its start."""
+    """a(t), psi(t) and x(t) of an averaged motion: derived once, integrated at every call from its start.
+    Limits are `seconds` and `memory`."""
 
-    def with_error(self, times: ArrayLike) -> dict[str, tuple[Doubles, Doubles]]:
-        """`a`, `psi`, `x` with their estimated errors at times in any order; no numbers where the motion is not reached."""
-        times = numpy.asarray(times, dtype=numpy.float64)
+    def with_error(self, times: Points, **limits: float) -> dict[str, tuple[Doubles, Doubles]]:
+        """`a`, `psi`, `x` with their estimated errors at times in any order; no numbers where the motion does not come."""
+        times = _doubles(times)
         order, back = numpy.unique(times.ravel(), return_inverse=True)
-        found = self._native.at(order, Means(digits=16))[:, back]
+        found = self._native.at(order, limited(limits, digits=16))[:, back]
         rows = [row.reshape(times.shape) for row in found]
         return {"a": (rows[0], rows[1]), "psi": (rows[2], rows[3]), "x": (rows[4], rows[5])}
 
-    def __call__(self, times: ArrayLike) -> tuple[Doubles, Doubles, Doubles]:
+    def __call__(self, times: Points, **limits: float) -> tuple[Doubles, Doubles, Doubles]:
         """a, psi and x at times."""
-        found = self.with_error(times)
+        found = self.with_error(times, **limits)
         return found["a"][0], found["psi"][0], found["x"][0]
 
-    def at(self, times: ArrayLike, digits: int = 30) -> list[dict[str, Number]]:
+    def at(self, times: Points | Value, digits: int = 30, **limits: float) -> list[dict[str, Number]]:
         """a, psi, x at increasing times to so many digits, each with its error: by `evaluate`."""
-        if not numpy.size(times):
-            return []
-        values = self._evaluated(digits, {"times": _listed(times)})["solution"]["values"]
-        return [{name: point[name] for name in ("a", "psi", "x")} for point in values]
+        found = self._displaced(times, digits, limits)
+        return [{name: point[name] for name in ("a", "psi", "x")} for point in found]
 
 
 def _joined(parts: list[dict[str, Any]], names: list[str]) -> dict[str, Any]:
@@ -253,8 +273,24 @@ def _joined(parts: list[dict[str, Any]], names: list[str]) -> dict[str, Any]:
     return {**parts[0], **joined, "complete": all(part["complete"] for part in parts)}
 
 
-@dataclass(frozen=True)
-class StabilityChart:
+class _Same:
+    """Equal where all that it holds is, NaN to NaN."""
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
+        return all(_same(getattr(self, name), getattr(other, name)) for name in names)
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, numpy.ndarray) and isinstance(other, numpy.ndarray):
+        return numpy.array_equal(one, other, equal_nan=True)
+    return type(one) is type(other) and bool(one == other)
+
+
+@dataclass(frozen=True, eq=False)
+class StabilityChart(_Same):
     """Verdicts over two parameters, row y, column x: 1 stable, -1 unstable, 0 neutral or undecided, 2 without
     an orbit or not computed (stopped: not `complete`); `radius` the largest multiplier of the true system, where it
     was asked for."""
@@ -273,8 +309,8 @@ class StabilityChart:
         return cls(**_joined(parts, ["y", "predicted", "exact", "radius"]))
 
 
-@dataclass(frozen=True)
-class ThresholdSurface:
+@dataclass(frozen=True, eq=False)
+class ThresholdSurface(_Same):
     """The signed threshold gamma_c over one or two parameters, row y, column x; no number where there is none,
     and `blanks` says why, or where it was stopped before (not `complete`)."""
 
@@ -293,8 +329,8 @@ class ThresholdSurface:
         return cls(**{**_joined(parts, ["y", "signed"]), "blanks": blanks})
 
 
-@dataclass(frozen=True)
-class BifurcationDiagram:
+@dataclass(frozen=True, eq=False)
+class BifurcationDiagram(_Same):
     """The points (value, x, velocity) of a section, one after the other; `values` are those of the parameter, and
     `ended` those whose motion ended, with the reason."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import math
 import numbers
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -17,7 +17,47 @@ from ._errors import UsageError
 
 Value = Union[int, Fraction, Decimal, float, str, Any]
 """An exact value: int, Fraction, Decimal, str (`"1/3"`, `"pi/4"`, `"2.5e-3"`), a SymPy number; a
-float is its shortest decimal, what was typed: 0.1 is 1/10, not 0x1.999999999999ap-4; NumPy's single ones likewise."""
+float is its shortest decimal, what was typed: 0.1 is 1/10, not 0x1.999999999999ap-4; NumPy's single ones likewise.
+Numbers of mpmath and Floats of SymPy that are doubles count as these; those with more bits are what they are."""
+
+# More than are read.
+_MOST_BITS = 3_300_000
+
+
+def shown(value: Any) -> str:
+    """A value in a message."""
+    try:
+        text = repr(value)
+    except Exception:  # Of a long integer, and whatever others do.
+        text = f"<{type(value).__name__}>"
+    return text if len(text) <= 80 else text[:77] + "..."
+
+
+def plain(text: Any, example: str) -> str:
+    """Refuses what is no text, and text with half a character."""
+    try:
+        if isinstance(text, str):
+            text.encode()
+            return text
+    except UnicodeEncodeError:
+        pass
+    raise UsageError(f"{shown(text)} is no text", "usage", example)
+
+
+def several(values: Any, name: str) -> list[Any]:
+    """Values that are a list."""
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) == 0:
+        raise UsageError(f"{name}: {shown(values)} is no list of values", "usage", f"[{shown(values)}]")
+    return list(values)
+
+
+def each(values: Any) -> list[Any]:
+    """The values of an array, or of lists in lists, or the only one."""
+    if isinstance(values, numpy.ndarray):
+        return list(values.ravel())
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        return [values]
+    return [value for part in values for value in each(part)]
 
 
 def exact(value: Value) -> str:
@@ -28,28 +68,32 @@ def exact(value: Value) -> str:
     """
     if isinstance(value, numpy.ndarray) and value.ndim == 0:
         value = value[()]
-    if isinstance(value, bool):
-        raise UsageError(f"{value!r} is no number", "value", "an int, Fraction, str, Decimal or float")
     if isinstance(value, str):
-        return value.replace("**", "^")
-    if isinstance(value, numbers.Integral):
-        return str(int(value))
-    if isinstance(value, Fraction):
-        return f"{value.numerator}/{value.denominator}"
+        return plain(value, "1/3").replace("**", "^")
     if isinstance(value, Decimal) and value.is_finite():
         return str(value).lower()
-    if isinstance(value, numbers.Real):
-        number = float(value)
-        if math.isfinite(number):
-            # A single precision number has a shorter decimal than the double that it is.
-            return str(value) if isinstance(value, numpy.floating) else repr(number)
-    if hasattr(value, "as_coeff_Mul") and hasattr(value, "free_symbols") and not value.free_symbols:
+    if isinstance(value, (float, numpy.floating)) and math.isfinite(value):
+        # A single precision number has a shorter decimal than the double that it is.
+        return str(value) if isinstance(value, numpy.floating) else repr(float(value))
+    if isinstance(value, numbers.Real) and hasattr(value, "_mpf_") and not hasattr(value, "name"):
+        sign, mantissa, exponent, bits = map(int, value._mpf_)
+        mantissa = -mantissa if sign else mantissa
+        if bits <= 53 and -1074 <= exponent <= 1024 - bits and (mantissa or not exponent):
+            return repr(math.ldexp(mantissa, exponent))
+        if mantissa and abs(exponent) <= _MOST_BITS:
+            value = mantissa * Fraction(2) ** exponent
+    if isinstance(value, numbers.Rational) and not isinstance(value, bool):
+        parts = [int(value.numerator), int(value.denominator)]
+        if max(part.bit_length() for part in parts) <= _MOST_BITS:
+            # `str` takes no long integer.
+            above, below = (str(Decimal(part)) for part in parts)
+            return above if isinstance(value, numbers.Integral) else f"{above}/{below}"
+    if hasattr(value, "as_coeff_Mul") and not getattr(value, "free_symbols", True):
         coefficient, rest = value.as_coeff_Mul()
-        if rest == 1 or str(rest) == "pi":
-            text = str(coefficient)
-            return text if rest == 1 else f"{text}*pi"
+        if str(rest) == "pi":
+            return f"{exact(coefficient)}*pi"
     raise UsageError(
-        f"{value!r} is no exact number", "value", "an int, Fraction, str, Decimal, float or SymPy number"
+        f"{shown(value)} is no exact number", "value", "an int, Fraction, str, Decimal, float or SymPy number"
     )
 
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 import functools
 import itertools
 import json
-import math
 import numbers
 import os
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Union
 
 import numpy
@@ -26,62 +24,39 @@ from ._arrays import (
     ThresholdSurface,
 )
 from ._errors import LindstedtError, UsageError
-from ._native import Case, Means
-from ._numbers import Value, exact
+from ._means import NAMES, taken, working
+from ._native import Case
+from ._numbers import Value, each, exact, plain, several, shown
 
 Sweep = Union[str, Mapping[str, Any], Sequence[str]]
-"""`"eps=0..1:11"`, `{"eps": (0, 1, 11)}` (ends and number), `{"eps": [0, "1/3", 1]}` (a list of values)."""
+"""`"eps=0..1:11"`, `{"eps": (0, 1, 11)}` (ends and number), `{"eps": [0, "1/3", 1]}` (a list of values).
+A tuple is a range and nothing else, in `grid`, too."""
 
 
 def _sweep(sweep: Sweep) -> str:
-    if isinstance(sweep, str):
-        return sweep
-    if not isinstance(sweep, Mapping):
-        return ";".join(sweep)
-    axes = []
-    for name, values in sweep.items():
-        if isinstance(values, tuple) and len(values) == 3:
-            low, high, count = values
-            axes.append(f"{name}={exact(low)}..{exact(high)}:{int(count)}")
-        else:
-            axes.append(f"{name}={','.join(map(exact, _several(values, name)))}")
-    return ";".join(axes)
+    if isinstance(sweep, Mapping):
+        return ";".join(_axis(name, values) for name, values in sweep.items())
+    axes = [sweep] if isinstance(sweep, str) else several(sweep, "sweep")
+    return ";".join(plain(axis, '"eps=0..1:11"') for axis in axes)
 
 
-def _several(values: Any, name: str) -> list[Any]:
-    if isinstance(values, str) or numpy.ndim(values) == 0 and not isinstance(values, Iterable):
-        raise UsageError(f"{name}: {values!r} is no list of values", "usage", f"[{values!r}]")
-    return list(values)
+def _axis(name: str, values: Any) -> str:
+    if not isinstance(values, tuple):
+        return f"{name}={','.join(map(exact, several(values, name)))}"
+    if len(values) != 3:
+        raise UsageError(f"{name}: {shown(values)} is no range", "usage", "(low, high, number), or a list of values")
+    low, high, count = map(exact, values)
+    return f"{name}={low}..{high}:{count}"
 
 
-def _text(value: Any) -> str:
+def _text(name: str, value: Any) -> str:
+    if name == "sweep":
+        return _sweep(value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (list, tuple, numpy.ndarray)) and numpy.ndim(value):
-        return ",".join(exact(item) for item in value)
+    if isinstance(value, (list, tuple)) or isinstance(value, numpy.ndarray) and value.ndim:
+        return ",".join(map(exact, each(value) if name == "times" else value))
     return exact(value)
-
-
-@contextmanager
-def _bar(show: bool | Callable[[str, int, int], None]) -> Iterator[Callable[[str, int, int], None] | None]:
-    """What is told of the work: a function, or a bar of tqdm where that is installed."""
-    if not show or callable(show):
-        yield show or None
-        return
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        yield None
-        return
-    with tqdm(leave=False) as bar:
-
-        def told(words: str, done: int, parts: int) -> None:
-            bar.total = parts or None
-            bar.set_description_str(words, refresh=False)
-            bar.n = done
-            bar.refresh()
-
-        yield told
 
 
 class Oscillator:
@@ -98,8 +73,7 @@ class Oscillator:
         self.__dict__.update(self.set(**values).__dict__)
 
     def _init(self, kind: str, text: str, values: dict[str, str], condition: str | None) -> None:
-        if not isinstance(text, str):
-            raise UsageError(f"{text!r} is no text", "usage", "\"x'' + x + eps*x**3 = 0\"")
+        plain(text, "\"x'' + x + eps*x**3 = 0\"")
         self._state = (kind, text, dict(values), condition)
         self._case = Case(kind, text, list(values.items()), condition)
 
@@ -117,8 +91,12 @@ class Oscillator:
     @classmethod
     def file(cls, path: str | os.PathLike[str], **values: Value) -> Oscillator:
         """An oscillator from a problem file (TOML)."""
-        with open(path, encoding="utf-8") as file:
-            return cls.toml(file.read(), **values)
+        try:
+            with open(plain(os.fspath(path), '"problem.toml"'), encoding="utf-8") as file:
+                text = file.read()
+        except (TypeError, ValueError) as error:
+            raise UsageError(f"{shown(path)} is no problem file: {error}", "usage", "the path of a TOML file") from None
+        return cls.toml(text, **values)
 
     @classmethod
     def toml(cls, text: str, **values: Value) -> Oscillator:
@@ -134,6 +112,7 @@ class Oscillator:
     def under(self, normalisation: str) -> Oscillator:
         """The same with another meaning of the amplitude: `initial`, `fundamental`, or `free` (averaging)."""
         kind, text, known, _ = self._state
+        plain(normalisation, "initial, fundamental or free")
         return self._made(kind, text, known, normalisation)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -186,7 +165,7 @@ class Oscillator:
     def _ask(self, verb: str, options: dict[str, Any], means: dict[str, Any]) -> Answer:
         kind = Derivation if verb == "derive" else Answer
         try:
-            with _work(means) as work:
+            with working(means) as work:
                 answer = kind(self._case.ask(verb, _options(options), work))
         except UsageError as error:
             for name in options.keys() & {*self.parameters, self._case.small}:
@@ -203,7 +182,7 @@ class Oscillator:
         Averaged with a free amplitude (`under("free")`) and at resonance. `mode=k` is a normal mode,
         `unknown="a"` a parameter that solvability fixes; `route` is auto, clock, driver or energy.
         """
-        means = _means(options)
+        means = taken(options)
         answer = self._ask("derive", {"order": order, **options}, means)
         assert isinstance(answer, Derivation)
         return answer
@@ -219,34 +198,34 @@ class Oscillator:
 
         With `cycles=2` alone: first-order averaging of any law, the cycles up to that amplitude.
         """
-        means = _means(options)
+        means = taken(options)
         return self._ask("evaluate", {"sweep": sweep, **options}, means)
 
     def prove(self, sweep: Sweep | None = None, **options: Any) -> Answer:
         """The periodic orbit as a theorem: existence, uniqueness, a bound of every number; a family with a sweep."""
-        means = _means(options)
+        means = taken(options)
         return self._ask("evaluate", {"sweep": sweep, "prove": True, **options}, means)
 
     def respond(self, sweep: Sweep | None = None, **options: Any) -> Answer:
         """The steady states at resonance: all in a box (`box`), or branches over a sweep; `order`, `start`, `follow`."""
-        means = _means(options)
+        means = taken(options)
         return self._ask("respond", {"sweep": sweep, **options}, means)
 
     def verify(self, order: int = 4, **options: Any) -> Answer:
         """The expansion against an integration in time: the observed order of accuracy; `small`, `periods`,
         `samples`, and `digits` of the integration."""
-        means = _means({name: options.pop(name) for name in list(options) if name in _MEANS - {"digits"}})
+        means = taken({name: options.pop(name) for name in list(options) if name in NAMES - {"digits"}})
         return self._ask("verify", {"order": order, **options}, means)
 
     def trade(self, **options: Any) -> Answer:
         """Speed against accuracy, every method and order; `orders`, `digits`, `harmonics`, `error`, `within`."""
-        means = _means({name: options.pop(name) for name in list(options) if name in _MEANS - {"digits"}})
+        means = taken({name: options.pop(name) for name in list(options) if name in NAMES - {"digits"}})
         return self._ask("trade", options, means)
 
     def simulate(self, **options: Any) -> Answer:
         """The motion in time: `until`, `periods` or `impacts`; `times`, `state`, `history`, `section`, `skip`,
         `lyapunov=True`, `zero_one=True`, `perturb`, `branch`, `figure`."""
-        means = _means(options)
+        means = taken(options)
         return self._ask("simulate", options, means)
 
     def threshold(self, sweep: Sweep | None = None, **options: Any) -> Answer:
@@ -254,12 +233,12 @@ class Oscillator:
 
         With `unknown="mu"` and `order`: the parameter for which the orbit stays homoclinic, as a series.
         """
-        means = _means(options)
+        means = taken(options)
         return self._ask("threshold", {"sweep": sweep, **options}, means)
 
     def stability(self, sweep: Sweep | None = None, **options: Any) -> Answer:
         """The impact orbit, its predicted and its true stability; `order`, `variant`, `kick`, `predictor`."""
-        means = _means(options)
+        means = taken(options)
         return self._ask("stability", {"sweep": sweep, **options}, means)
 
     # Functions and arrays.
@@ -267,24 +246,24 @@ class Oscillator:
     def frequency_function(self, **options: Any) -> FrequencyFunction:
         """omega over the small parameter and the amplitude, for arrays; `order`, `resum`. Where no amplitude is
         given it is this oscillator's."""
-        means = _means(options)
-        with _work(means) as work:
+        means = taken(options)
+        with working(means) as work:
             made = self._case.frequency_function(_options(options), work)
             return FrequencyFunction(made, self, "frequency_function", options)
 
     def solution_function(self, harmonics: int = 15, **options: Any) -> SolutionFunction:
         """x(t) over the small parameter and the amplitude, for arrays, by so many harmonics; `order`, `resum`. Where
         no amplitude is given it is this oscillator's."""
-        means = _means(options)
-        with _work(means) as work:
+        means = taken(options)
+        with working(means) as work:
             options = {"harmonics": harmonics, **options}
             made = self._case.solution_function(_options(options), work)
             return SolutionFunction(made, self, "solution_function", options)
 
     def solution(self, harmonics: int = 15, **options: Any) -> Solution:
         """x(t) at the values set, for arrays; `order`, `resum`, `phase`."""
-        means = _means(options)
-        with _work(means) as work:
+        means = taken(options)
+        with working(means) as work:
             options = {"harmonics": harmonics, **options}
             made = self._case.periodic_solution(_options(options), work)
             return Solution(made, self, "solution", options)
@@ -292,8 +271,8 @@ class Oscillator:
     def averaged_solution(self, **options: Any) -> AveragedSolution:
         """a(t), psi(t), x(t) of the averaged motion at the values set, for arrays; `order`, and `start="A,PSI"` or
         `state="X,V"`."""
-        means = _means(options)
-        with _work({"digits": 16, **means}) as work:
+        means = taken(options)
+        with working({"digits": 16, **means}) as work:
             made = self.under("free")._case.averaged_motion(_options(options), work)
             return AveragedSolution(made, self.under("free"), "averaged_solution", options)
 
@@ -301,7 +280,7 @@ class Oscillator:
         """As arrays, on an executor by blocks of rows, or of the values of a diagram."""
         options = {"sweep": _sweep(sweep), **options}
         kind: Any = {"stability": StabilityChart, "threshold": ThresholdSurface}.get(verb, BifurcationDiagram)
-        counts = self._case.counts(options["sweep"])
+        counts = [len(axis) for axis in self._case.axes(options["sweep"])]
         if options.get("follow") and executor is not None:
             raise UsageError("values that follow each other are not split", "usage", "without executor")
         if executor is None or kind is not BifurcationDiagram and len(counts) < 2:
@@ -337,68 +316,34 @@ class Oscillator:
         return diagram
 
 
-_MEANS = {"digits", "doubles", "memory", "seconds", "progress"}
-_COUNTS = {"digits": 10_000, "memory": 2**63 - 1}
-
-
-def _means(options: dict[str, Any]) -> dict[str, Any]:
-    """Takes digits, doubles, memory, seconds and progress out of the options; what is nothing is as usual."""
-    means = {name: options.pop(name) for name in _MEANS if name in options}
-    means = {name: value for name, value in means.items() if value is not None}
-    for name, value in means.items():
-        if name in ("digits", "memory", "seconds") and (isinstance(value, bool) or not isinstance(value, numbers.Real)):
-            raise UsageError(f"{name} = {value!r} is no number", "usage", f"{name}=30")
-        if name in _COUNTS:
-            if not (math.isfinite(value) and value == int(value) and 1 <= value <= _COUNTS[name]):
-                raise UsageError(f"{name} = {value!r} is out of range", name, f"a whole number from 1 to {_COUNTS[name]}")
-            means[name] = int(value)
-    return means
-
-
-_process: list[int] = []
-
-
-def _check_process() -> None:
-    """Refuses work in a process that was forked off one that worked: its threads are not there, and it would wait for
-    them for ever."""
-    if not _process:
-        _process.append(os.getpid())
-    if _process[0] != os.getpid():
-        raise UsageError(
-            "this process was forked off one in which lindstedt had worked", "fork", 'multiprocessing with "spawn"'
-        )
-
-
-@contextmanager
-def _work(means: dict[str, Any]) -> Iterator[Means]:
-    _check_process()
-    progress = means.pop("progress", False)
-    with _bar(progress) as told:
-        yield Means(progress=told, **means)
-
-
 def _options(options: dict[str, Any]) -> dict[str, str]:
-    made = {name: value for name, value in options.items() if value is not None}
-    return {name: _sweep(value) if name == "sweep" else _text(value) for name, value in made.items()}
+    return {name: _text(name, value) for name, value in options.items() if value is not None}
 
 
 def grid(
     oscillator: Oscillator,
     verb: str,
-    values: Mapping[str, Iterable[Value]],
+    values: Mapping[str, Iterable[Value] | tuple[Value, Value, int]],
     executor: Any = None,
     block: int = 16,
     **options: Any,
 ) -> list[Any]:
-    """The answers to a question at every point of a grid, the first parameter slowest.
+    """The answers to a question at every point of a grid, the first parameter slowest; values are a list, or a range
+    `(low, high, number)` as in a sweep.
 
     `executor` is any `concurrent.futures.Executor` or a Dask client; points go to it in blocks of `block`,
     and the answers are those of a local run but for the seconds. A point that is refused stands as its exception.
     Processes are started with "spawn", not forked.
     """
-    if verb not in _VERBS:
-        raise UsageError(f"there is no question {verb!r}", "usage", ", ".join(sorted(_VERBS)))
-    names, axes = list(values), [_several(axis, name) for name, axis in values.items()]
+    if not isinstance(oscillator, Oscillator):
+        raise UsageError(f"{shown(oscillator)} is no oscillator", "usage", "Oscillator(...)")
+    if not isinstance(verb, str) or verb not in _VERBS:
+        raise UsageError(f"there is no question {shown(verb)}", "usage", ", ".join(sorted(_VERBS)))
+    if not isinstance(values, Mapping):
+        raise UsageError(f"{shown(values)} are no values of parameters", "usage", '{"eps": [...]}')
+    names = [plain(name, "the name of a parameter") for name in values]
+    ranges = {name: oscillator._case.axes(_axis(name, axis))[0] for name, axis in values.items() if isinstance(axis, tuple)}
+    axes = [ranges.get(name) or several(axis, name) for name, axis in values.items()]
     points = list(itertools.product(*axes))
     blocks = [points[i : i + block] for i in _starts(len(points), block)]
     work = functools.partial(_block, oscillator, verb, names, options=options)
@@ -413,8 +358,8 @@ _VERBS = {
 
 def _starts(count: int, block: int) -> range:
     """Where blocks of so many begin."""
-    if block < 1:
-        raise UsageError(f"block = {block!r} holds nothing", "usage", "a whole number from 1")
+    if not isinstance(block, numbers.Integral) or block < 1:
+        raise UsageError(f"block = {shown(block)} holds nothing", "usage", "a whole number from 1")
     return range(0, count, block)
 
 
@@ -424,8 +369,8 @@ _BLOCKS = 64
 
 def _part(oscillator: Oscillator, verb: str, options: dict[str, Any], part: tuple[int, int] | None) -> dict[str, Any]:
     options = {**options, "part": part}
-    means = _means(options)
-    with _work({"doubles": True, **means}) as work:
+    means = taken(options)
+    with working({"doubles": True, **means}) as work:
         return oscillator._case.arrays(verb, _options(options), work)
 
 
@@ -436,7 +381,7 @@ def _split(executor: Any, work: Callable[[Any], Any], parts: list[Any]) -> list[
     if hasattr(executor, "get_executor"):
         return _on_dask(executor, work, parts)
     if not hasattr(executor, "submit"):
-        raise UsageError(f"{executor!r} is no executor", "usage", "a concurrent.futures.Executor or a Dask client")
+        raise UsageError(f"{shown(executor)} is no executor", "usage", "a concurrent.futures.Executor or a Dask client")
     futures = [executor.submit(work, part) for part in parts]
     return [future.result() for future in futures]
 

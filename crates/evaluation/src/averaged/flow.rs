@@ -33,13 +33,14 @@ impl Flow {
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Self {
         if let Some([growth, frequency]) = system.linear() {
-            let state = |t: &Float| {
+            let mut state = |t: &Float| {
+                goes_on().then_some(())?;
                 let bits = growth.prec();
                 let power = Float::with_val(bits, &growth * t).exp() * &system.start[0];
                 let turn = Float::with_val(bits, &frequency * t) + &system.start[1];
                 Some(State { values: [power, turn], errors: [0.0; 2] })
             };
-            return Self { states: times.iter().map(state).collect(), ended: None };
+            return Self { states: times.iter().map(&mut state).collect(), ended: None };
         }
         let digits = u32::try_from(digits).unwrap_or(u32::MAX / 8).saturating_add(4);
         let (mut states, mut ended) = (vec![None; times.len()], None);
@@ -83,6 +84,7 @@ fn integrate(
     let bits = real_bits(&real);
     let start = system.start.clone();
     let value = |t: &Float| {
+        goes_on().then_some(())?;
         if t.is_zero() {
             return Some(start.clone());
         }

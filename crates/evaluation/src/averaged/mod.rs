@@ -293,6 +293,9 @@ impl Motion {
         // Errors accumulate: the largest difference so far.
         let mut truncation = [0.0f64; 2];
         for (i, time) in times.iter().enumerate() {
+            if work.stop.asked() {
+                break;
+            }
             let Some(Some(state)) = found.states.get(i) else { continue };
             if !floats[i].is_zero() {
                 let known = self.integration_error.unwrap_or(0.0);

@@ -1,8 +1,8 @@
 //! The solution as a function: its Fourier series in omega t, with the measured deviation.
 
 use super::{Fourier, Trajectory};
-use crate::Error;
 use crate::refusal::Refused;
+use lindstedt_algebra::Stop;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -42,15 +42,14 @@ pub struct SolutionCode {
 }
 
 impl SolutionCode {
-    /// A trajectory by its harmonics up to one.
+    /// A trajectory by its harmonics.
     pub(super) fn new(
         problem: &str,
         trajectory: &Trajectory,
+        fourier: Fourier,
         language: Language,
-        harmonics: usize,
-    ) -> Result<Self, Error> {
-        let Fourier { coefficients: list, deviation, error, largest_error } =
-            trajectory.fourier(harmonics).ok_or_else(no_value)?;
+    ) -> Self {
+        let Fourier { coefficients: list, deviation, error, largest_error } = fourier;
         let size = list.iter().fold(0.0f64, |m, (c, s)| m.max(c.abs()).max(s.abs()));
         // Below the error of the expansion a coefficient is noise; where some phase has no estimate,
         // the measured deviation stands for it.
@@ -71,7 +70,7 @@ impl SolutionCode {
         };
         let words = [note, "the expansion".to_owned(), left_out];
         let series = (list, deviation, trajectory.frequency());
-        Ok(Self::written(problem, series, small, language, words))
+        Self::written(problem, series, small, language, words)
     }
 
     /// An orbit of Newton's method in Fourier space by its harmonics, and omega.
@@ -121,13 +120,20 @@ impl SolutionCode {
     }
 }
 
-/// That there are no harmonics.
-pub(super) fn no_value() -> Refused {
-    Refused::undecided(
-        "no-value",
-        "the expansion has no value at some phase",
-        "lower or raise --order, or --resum none",
-    )
+/// The harmonics of a trajectory up to one.
+pub(super) fn sampled(
+    trajectory: &Trajectory,
+    harmonics: usize,
+    stop: &Stop,
+) -> Result<Fourier, Refused> {
+    trajectory.fourier(harmonics).ok_or_else(|| match stop.asked() {
+        true => Refused::stopped("stopped before the phases were sampled", ""),
+        false => Refused::undecided(
+            "no-value",
+            "the expansion has no value at some phase",
+            "lower or raise --order, or --resum none",
+        ),
+    })
 }
 
 fn rust(note: &str, omega: f64, terms: &[Term]) -> String {

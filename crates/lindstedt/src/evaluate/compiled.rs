@@ -1,6 +1,6 @@
 //! Derived once, evaluated often: the frequency at a million parameters, x(t) at a million times.
 
-use super::code::no_value;
+use super::code::sampled;
 use super::{Evaluate, Fourier, PeriodicSolution, Question, SolutionFunction, Trajectory};
 use crate::{Answer, DerivationError, Error, Exact, Oscillator, Refused, Remark, Standing, Work};
 use lindstedt_equation::AmplitudeRole;
@@ -169,14 +169,13 @@ impl Oscillator {
         harmonics: usize,
         work: &Work,
     ) -> Result<Answer<PeriodicSolution>, Error> {
-        few_harmonics(harmonics)?;
         let start = Instant::now();
         let solved = self.solved(question, harmonics, work)?;
         let (order, at, tier) = (solved.order, solved.at, solved.way.tier());
         let value = match solved.way {
             Way::Newton(fourier, frequency) => PeriodicSolution::new(fourier, frequency, "newton"),
             Way::Sum(path) => {
-                let fourier = path.fourier(harmonics).ok_or_else(no_value)?;
+                let fourier = sampled(&path, harmonics, &work.stop)?;
                 PeriodicSolution::new(fourier, path.estimated_frequency(), "expansion")
             }
         };
@@ -191,6 +190,7 @@ impl Oscillator {
         harmonics: usize,
         work: &Work,
     ) -> Result<Solved, Error> {
+        few_harmonics(harmonics)?;
         let (case, remarks) = self.settled()?;
         let mut found = case.period(question, work)?;
         let improved = case.improve(&mut found, question, work);
@@ -214,7 +214,7 @@ fn varying(frequency: &FrequencyFunction) -> (String, bool, usize) {
 }
 
 /// Refuses more harmonics than are ever summed.
-fn few_harmonics(harmonics: usize) -> Result<(), Error> {
+pub(super) fn few_harmonics(harmonics: usize) -> Result<(), Error> {
     if harmonics <= MOST_HARMONICS {
         return Ok(());
     }

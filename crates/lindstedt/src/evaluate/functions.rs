@@ -5,6 +5,7 @@
 //! polynomials by Horner's rule, cut off at an order and not resummed; without the amplitude where it does not vary.
 
 use super::code::{escaped, number};
+use super::compiled::few_harmonics;
 use super::{Evaluate, Language};
 use crate::{Answer, Error, Oscillator, Work};
 use lindstedt_evaluation::compiled::Varied;
@@ -65,6 +66,7 @@ impl Oscillator {
         harmonics: usize,
         work: &Work,
     ) -> Result<Answer<ExpansionCode>, Error> {
+        few_harmonics(harmonics)?;
         let order = question.order.unwrap_or(ORDER);
         let make = |varied: &Varied<'_>| Expansion::new(varied, order, harmonics, work);
         let varies = |it: &Expansion| (it.small.clone(), it.carried != Carried::Not, it.order);

@@ -16,6 +16,7 @@ mod wanted;
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
+use code::sampled;
 pub use code::{Language, SolutionCode};
 use compiled::Way;
 pub use functions::ExpansionCode;
@@ -169,20 +170,15 @@ impl Oscillator {
         let solved = self.solved(question, harmonics, work)?;
         let (order, at, name) = (solved.order, solved.at, &self.problem().name);
         let tier = solved.way.tier();
-        let value =
-            match solved.way {
-                Way::Newton(series, omega) => {
-                    SolutionCode::by_newton(name, (series, omega.value), language)
-                }
-                Way::Sum(path) => SolutionCode::new(name, &path, language, harmonics).map_err(
-                    |error| match work.stop.asked() {
-                        true => {
-                            Refused::stopped("stopped before the phases were sampled", "").into()
-                        }
-                        false => error,
-                    },
-                )?,
-            };
+        let value = match solved.way {
+            Way::Newton(series, omega) => {
+                SolutionCode::by_newton(name, (series, omega.value), language)
+            }
+            Way::Sum(path) => {
+                let fourier = sampled(&path, harmonics, &work.stop)?;
+                SolutionCode::new(name, &path, fourier, language)
+            }
+        };
         let header = self.header(at, Some(order), tier, start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks: solved.remarks })
     }

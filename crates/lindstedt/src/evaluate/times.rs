@@ -52,7 +52,7 @@ impl FromStr for Times {
 }
 
 impl Times {
-    /// Reads `LO..HI:COUNT`, both ends included, or `T1,T2,...`, increasing.
+    /// Reads `LO..HI:COUNT`, both ends included, or `T1,T2,...`, increasing, or one time.
     ///
     /// # Errors
     /// [`Refused`] with the form that is expected, [`DerivationError::BadValue`](crate::DerivationError::BadValue).
@@ -64,7 +64,7 @@ impl Times {
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, Error> {
-        if text.contains(',') {
+        if text.contains(',') || Exact::parse(text).is_ok() {
             return Self::one_by_one(text);
         }
         let (low, rest) = text.split_once("..").ok_or_else(|| usage(text))?;

@@ -297,6 +297,9 @@ impl Refusal for EvaluationError {
             Self::Resummation { .. } => {
                 (NoAnswer, "no-such-resummation", "try --resum auto, or another order")
             }
+            Self::TooManyPhases { .. } => {
+                (Undecided, "too-large", "fewer harmonics, or raise --limit-memory")
+            }
             Self::NoSuchStart { .. } => (NoAnswer, "no-start", "give amplitude and phase: --start"),
             Self::NotTwoValues { option, .. } => (Usage, *option, "for example 1,0"),
             Self::NotPositive { .. } => (Usage, "start", "--start A,PSI with A > 0"),
