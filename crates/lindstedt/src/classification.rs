@@ -41,6 +41,9 @@ pub fn of(
 /// What to do with frequencies that have no common measure,
 const FORCES: &str = "forces are averaged together where their frequencies are rational multiples of one: approximate the \
      ratio by a fraction; `lindstedt simulate` takes them as they are";
+/// with a phase beside a delay,
+const PHASE: &str = "beside a delay a force has no phase: shift the time, which nothing else in the equation contains, so that \
+     it is cos(omega*t) or sin(omega*t); `lindstedt simulate` takes it as it is";
 /// with one that is irrational,
 const RATIO: &str = "a rational multiple of the frequency of the oscillator, as cos(sqrt(2)*t) beside x'' + 2*x, is taken as it \
      is; a parameter without a value, cos(omega*t), counts as independent (`lindstedt derive`), a fraction near it as itself; \
@@ -59,6 +62,17 @@ const HOPF: &str = "with a factor eps, eps*x(t - T), it is averaged; `lindstedt 
 /// What a file says for the amplitude to be averaged.
 const AVERAGES: &str =
     "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";
+
+/// Whether this is a function of more than a multiple of the time.
+fn has_phase(e: &Expression) -> bool {
+    let zero = |e: &Expression| (*e == Expression::Time).then(|| Expression::integer(0));
+    match e {
+        Expression::Function(_, angle) => {
+            angle.substitute(&zero).canonical() != Expression::integer(0)
+        }
+        _ => false,
+    }
+}
 
 /// The path of a file with the place of a term of its equation, or of the equation.
 pub(crate) fn place(file: &ProblemFile, path: &str, term: Option<&Expression>) -> String {
@@ -92,6 +106,7 @@ pub fn check(
         reasons.filter(|r| !matches!(r, Reason::Condition | Reason::OutsideDomain(_)))
     };
     let small = &file.problem.small;
+    let delayed = file.problem.equation.nodes().any(Expression::is_delayed);
     let nothing_small = !file.problem.equation.contains(&Expression::Small);
     let marks = marks(small);
     let refused = |at: String, what: String, hint: String| {
@@ -124,6 +139,7 @@ pub fn check(
         let hint = match reason {
             Reason::DelayedLinearPart(_) => HOPF.to_owned(),
             _ if nothing_small => marks,
+            Reason::Frequency(e) if delayed && e.nodes().any(has_phase) => PHASE.to_owned(),
             Reason::Frequency(_) => FORCES.to_owned(),
             _ => String::new(),
         };

@@ -36,6 +36,8 @@ pub(crate) struct Radii {
 
 /// Existence is first looked for within this many times the root of the linear inequality.
 const ROOM: u32 = 4;
+/// The largest ball of uniqueness that is looked for.
+const LARGEST: f64 = 1e9;
 /// Shrinkings of the ball of uniqueness.
 const MOST_TRIES: usize = 80;
 
@@ -100,13 +102,14 @@ pub(crate) fn decide(
     let refused = || Failure::Residual { modes, y0: bounds.y0.to_f64(), z2: bounds.z2 };
     let radius = bounds.radius().filter(|r| *r <= room).ok_or_else(refused)?;
     // Z2 grows with the ball: the largest one on which T still contracts.
-    let mut unique_within = Float::with_val(53, left / bounds.z2.max(f64::MIN_POSITIVE));
+    let mut unique_within = Float::with_val(53, left / bounds.z2.max(left / LARGEST));
     for _ in 0..MOST_TRIES {
         let wide = Bounds { z2: z2(&unique_within).0, ..bounds.clone() };
         if wide.contracts(total, &unique_within) {
             break;
         }
-        unique_within *= 0.8;
+        // Sines and exponentials of a large ball have no bound in doubles.
+        unique_within *= if wide.z2.is_finite() { 0.8 } else { 0.1 };
     }
     let wide = Bounds { z2: z2(&unique_within).0, ..bounds.clone() };
     if !wide.contracts(total, &unique_within) || unique_within < radius {

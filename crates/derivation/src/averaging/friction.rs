@@ -53,8 +53,8 @@ pub(super) fn average(
     settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Averaging, Error> {
-    limit_memory(settings)?;
     let scaled = HalfTurnProblem::new(problem, &settings.parameters, settings.order)?;
+    limit_memory(settings, scaled.names.len())?;
     let mut told = |order, terms| observer(Progress::Order(order, terms));
     let found = average_half_turn(&scaled.law, settings.order, &settings.stop, &mut told);
     observer(Progress::Checking);

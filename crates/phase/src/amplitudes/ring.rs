@@ -10,6 +10,9 @@ use std::sync::atomic::Ordering::Relaxed;
 
 pub(super) type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
 
+/// Products of coefficients between two looks at the stop.
+const LOOK: usize = 10_000;
+
 impl<S: Scalars> Amplitudes<S> {
     pub(super) fn largest(&self, f: &AmplitudeElement<S::Element>) -> i32 {
         let n = self.exponents();
@@ -169,7 +172,15 @@ impl<S: Scalars> Amplitudes<S> {
         });
         let lists: Vec<_> = lists.collect();
         let add = |mut sum: Sum<S::Element>| {
+            let mut unseen = 0;
             for ((a, b), lists) in ordered.iter().zip(&lists) {
+                unseen += lists[0].len() * lists[1].len();
+                if unseen > LOOK {
+                    unseen = 0;
+                    if self.stop.asked() {
+                        break;
+                    }
+                }
                 let n = denominator.divided(&a.denominator).divided(&b.denominator);
                 self.accumulate(&mut sum, *lists, &n)?;
             }
