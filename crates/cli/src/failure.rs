@@ -134,5 +134,13 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     let wants_json = given.iter().any(|argument| argument == "--format=json")
         || given.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
     let format = if wants_json { Format::Json } else { Format::Text };
-    Failure::usage("usage", message, "see `lindstedt --help`").report(format)
+    // What looks like options and has a prime is an equation.
+    let equation = given.iter().any(|word| word.starts_with('-') && word.contains("''"));
+    let hint = match equation {
+        true => {
+            "an equation that begins with - stands behind --: lindstedt derive -- \"-x'' - x = eps*x^3\""
+        }
+        false => "see `lindstedt --help`",
+    };
+    Failure::usage("usage", message, hint).report(format)
 }

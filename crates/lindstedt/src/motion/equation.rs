@@ -130,8 +130,8 @@ fn embedded(equation: &Expression) -> Expression {
 }
 
 /// The equation with cos(omega t) for cos(omega t + p) and the same for sin: the period of a force
-/// does not depend on its phase. With a name the small parameter stands by it, so that a rate may contain it.
-pub(super) fn without_phases(e: &Expression, small: Option<&str>) -> Expression {
+/// does not depend on its phase. The small parameter stands by its name, so that a rate may contain it.
+pub(super) fn without_phases(e: &Expression, small: &str) -> Expression {
     let out = |e: Expression| {
         let e = e.canonical();
         e.multiplied_out().unwrap_or(e).canonical()
@@ -145,7 +145,7 @@ pub(super) fn without_phases(e: &Expression, small: Option<&str>) -> Expression 
             .then(|| (out(at(1) - at(0)) * Expression::Time).apply(*function))
     };
     let named = |e: &Expression| match e {
-        Expression::Small => small.map(Expression::parameter),
+        Expression::Small => Some(Expression::parameter(small)),
         _ => None,
     };
     e.map(&named).map(&plain)

@@ -78,8 +78,7 @@ impl Oscillator {
         wanted: &Harmonics,
         work: &Work,
     ) -> Result<[Vec<Reading>; 2], Error> {
-        let mut setup = set_up(self, &Start::default(), true, precomputed(work))?;
-        setup.take_detuned()?;
+        let setup = set_up(self, &Start::default(), true, precomputed(work))?;
         let usage = |message: String| Refused::usage("follow", message, "lindstedt simulate");
         if !setup.sweepable.contains(&axis.name) {
             return Err(usage(format!("{} cannot be varied in time", axis.name)).into());

@@ -19,16 +19,15 @@ const MOST: u32 = 10_000;
 /// Stands for t: no name of a user has a blank.
 const MOMENT: &str = "the moment";
 
-/// The frequency 2 pi/T of the least period T of all forces; nothing where they have none in common. A name makes
-/// the small parameter one of its parameters.
+/// The frequency 2 pi/T of the least period T of all forces; nothing where they have none in common. The small parameter is a
+/// parameter by its name.
 ///
 /// The harmonics as written are multiples of one frequency; those of their products and functions may be
 /// multiples of a larger one: |cos t| has the period pi. A part of the period is one of the equations if all
 /// of them have the same values that much later, at several moments, generic states and parameters.
-pub(super) fn frequency(equations: &[&Expression], small: Option<&str>) -> Option<Expression> {
+pub(super) fn frequency(equations: &[&Expression], small: &str) -> Option<Expression> {
     let plain = equations.iter().map(|e| without_phases(e, small)).collect();
     let written = Excitation::of(&Expression::Sum(plain)).ok()?.frequency?;
-    let small = small.unwrap_or("the small one");
     let free = |e: &Expression| match e {
         Expression::Small => Some(Expression::parameter(small)),
         Expression::Unknown(_) => {
@@ -102,13 +101,14 @@ mod tests {
             (&["x'' + x = cos(t)^2 + sin(t)^2"], None),
             (&["x'' + x = cos(t) + cos(omega*t)"], None),
             (&["x'' + x = 0"], None),
+            (&["x'' + x = cos((3 + eps)*t)*cos((3 + eps)*t + 1)"], Some("2*(3 + eps)")),
             (&["x'' + x = cos(2*t)", "y'' + 2*y = x - cos(3*t)"], Some("1")),
             (&["x'' + x = cos(t)", "y'' + y = x - cos(t)"], Some("1")),
         ] {
             let names = Names::any("eps").of_system(texts.iter().copied());
             let of = |text: &&str| parse_equation(text, &names);
             let list: Vec<Expression> = texts.iter().map(of).collect::<Result<_, _>>().unwrap();
-            let found = frequency(&list.iter().collect::<Vec<_>>(), None);
+            let found = frequency(&list.iter().collect::<Vec<_>>(), "eps");
             let found = found.map(|frequency| frequency.print("eps", Style::Text));
             assert_eq!(found.as_deref(), expected, "{texts:?}");
         }

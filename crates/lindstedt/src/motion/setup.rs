@@ -30,10 +30,8 @@ pub(super) struct Setup {
     pub chosen: Option<&'static str>,
     /// The motion before t = 0, in words.
     pub history: Option<&'static str>,
-    /// The frequency of the force in the parameters.
+    /// The frequency of the force in the parameters, the small one by its name.
     pub frequency: Option<Expression>,
-    /// The same where it contains the small parameter, by its name.
-    pub detuned: Option<Expression>,
     /// The name of the small parameter.
     pub small: String,
     /// A wall bounds the motion.
@@ -80,17 +78,6 @@ impl Setup {
         };
         let begin = case.begin(start, swept)?;
         case.finished(begin, at)
-    }
-
-    /// Takes a force whose frequency contains the small parameter for one of that period.
-    pub fn take_detuned(&mut self) -> Result<(), Error> {
-        if let (None, Some(frequency)) = (&self.frequency, self.detuned.take()) {
-            let parameters = &self.flow.parameters;
-            let evaluator = Evaluator { parameters, small: &self.small, bits: 64 };
-            self.flow.forcing = evaluator.period(&frequency)?.map(Quantity::Float);
-            self.frequency = Some(frequency);
-        }
-        Ok(())
     }
 
     /// The period of the force; where what varies determines it, at the first value.
@@ -318,8 +305,7 @@ impl Case<'_> {
     }
 
     fn finished(mut self, begin: Begin, at: Vec<(String, String)>) -> Result<Setup, Error> {
-        let [frequency, detuned] =
-            [None, Some(&*self.small)].map(|small| frequency(&[&self.equation], small));
+        let frequency = frequency(&[&self.equation], &self.small);
         let forcing = match &frequency {
             Some(frequency) => self.evaluator().period(frequency)?.map(Quantity::Float),
             None => None,
@@ -357,7 +343,6 @@ impl Case<'_> {
             linear: !wall && is_linear(&self.equation),
             // The frequency of the force is held on the orbit.
             frequency: frequency.filter(|_| self.orbit.is_none()),
-            detuned,
             sweepable,
             small: self.small,
             orbit: self.orbit,

@@ -43,7 +43,7 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
     let others = state.split_off(2);
     let [x, v] = <[Quantity; 2]>::try_from(state).map_err(|_| Error::NoValue)?;
     let equations: Vec<&Expression> = problem.equations().collect();
-    let [frequency, detuned] = [None, Some(&*small)].map(|small| frequency(&equations, small));
+    let frequency = frequency(&equations, &small);
     let evaluator = Evaluator { parameters: &parameters, small: &small, bits: 256 };
     let period = frequency.as_ref().map(|frequency| evaluator.period(frequency)).transpose()?;
     let mut mentioned: Vec<String> = problem.equations().flat_map(|e| e.parameters()).collect();
@@ -55,7 +55,6 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
         chosen,
         history: None,
         frequency,
-        detuned,
         wall: false,
         linear: false,
         orbit: None,
