@@ -150,6 +150,18 @@ pub enum SimulateError {
         /// The switch.
         switch: usize,
     },
+    /// The motion rests on a discontinuity whose sign enters no rate of its argument, as sign(x) in x'': it stays there,
+    /// or its future is not unique.
+    #[error(
+        "switch {switch} at t = {time}: at rest on the discontinuity, where the sign enters the second derivative of its \
+         argument: that kind of sliding is not followed"
+    )]
+    HigherSliding {
+        /// The switch.
+        switch: usize,
+        /// Where.
+        time: f64,
+    },
     /// More impacts than allowed.
     #[error("{impacts} impacts up to t = {time}, more than allowed")]
     TooManyImpacts {

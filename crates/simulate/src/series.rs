@@ -200,8 +200,12 @@ impl<R: Real> Series<R> {
         real.times_integer(&mut h[0], 2);
         let size = real.log2(&slope).max(real.log2(&h[0]));
         let affine = defect <= size - f64::from(real.bits()) / 2.0 || defect == f64::NEG_INFINITY;
-        if !affine || real.sign(&slope) == 0 {
+        if !affine {
             return Err(SimulateError::NotAffine { switch });
+        }
+        if real.sign(&slope) == 0 {
+            let time = real.to_f64(time);
+            return Err(SimulateError::HigherSliding { switch, time });
         }
         Ok(slope)
     }

@@ -27,6 +27,41 @@ fn a_resumed_sweep_belongs_to_one_equation() {
     assert!(fresh.contains("1.264911064") && fresh.contains("2.000000000"), "{fresh}");
 }
 
+/// Products and functions of harmonics may have a shorter period than these have together: |cos t| that of pi, eps 1/4.
+#[test]
+fn products_of_harmonics_have_their_period() {
+    let section = ["--section", "stroboscopic", "--periods", "2", "--state", "1/2,0", "--f64"];
+    let section = [&section[..], &["--set", "eps=1/4"]].concat();
+    let eps = "eps*x^3 + x'/5 + x";
+    for (equation, frequency) in [
+        ("x'' + {} = cos(3*t/2 + 1/3)", 1.5),
+        ("x'' + {} = cos(t) + cos(3/2*t)/5", 0.5),
+        ("x'' + {} = 2*cos(3*t/5)^2 - 1", 1.2),
+        ("x'' + {} = x*abs(cos(t))", 2.0),
+        ("x'' + {} = cos(t)*cos(t/3 + 1)", 2.0 / 3.0),
+        ("x'' + {} = cos(t)*(x + cos(t/3))", 1.0 / 3.0),
+        ("x'' + {} = 16*cos(t)^5 - 20*cos(t)^3 + 5*cos(t)", 5.0),
+        ("x'' + {} + sin(x + cos(t)^2) = 0", 2.0),
+        ("x'' + {} = cos((3 + eps)*t)*cos((3 + eps)*t + 1)", 6.5),
+        ("x'' + {} = cos(t) + x*sign(x - cos(t))/5", 1.0),
+    ] {
+        let equation = equation.replace("{}", eps);
+        let found = json(&[&["simulate", &equation], &section[..]].concat());
+        let time = found["section"]["points"][0][0].as_f64().unwrap();
+        let turns = time * frequency / (2.0 * std::f64::consts::PI);
+        assert!((turns - 1.0).abs() < 1e-12, "{equation}: {time}");
+    }
+    for force in ["cos(t)^2 + sin(t)^2", "cos(t) + cos(sqrt(2)*t)"] {
+        let equation = format!("x'' + {eps} = {force}");
+        let words = "no force with one period";
+        refuses(&[&["simulate", &equation], &section[..]].concat(), 2, words);
+    }
+    let two = ["simulate", "x'' + x + eps*y = cos(2*t); y'' + 2*y = eps*x - cos(3*t)"];
+    let found = json(&[&two[..], &section[..4], &section[6..]].concat());
+    let time = found["section"]["points"][0][0].as_f64().unwrap();
+    assert!((time - 2.0 * std::f64::consts::PI).abs() < 1e-12, "{time}");
+}
+
 /// cos(w t + p) has the period of cos(w t), whatever the frequency is made of.
 #[test]
 fn forces_with_a_phase_have_their_period() {
@@ -55,7 +90,7 @@ fn forces_with_a_phase_have_their_period() {
         assert_eq!(shown.contains("averaging (KBM)     applies"), taken, "{shown}");
     }
     let path = folder.problem("x'' + x + x'/5 = cos((w1 + w2)*t)", &frequencies, "");
-    refuses(&["simulate", &path, "--set", "w1=-1"], 3, "(w1 + w2), is outside its domain");
+    refuses(&["simulate", &path, "--set", "w1=-1"], 3, "w1 + w2, is outside its domain");
 }
 
 /// m x'' + eps c x' + k x + eps k3 x^3 = p cos(w t) averaged: A_1 = -c a/(2 m), and B_1 =

@@ -78,39 +78,3 @@ fn repeat(forces: &[Expression], frequency: &Expression, parts: u32) -> Option<b
     }
     Some(true)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use lindstedt_problem_file::{Names, parse_equation};
-
-    #[test]
-    fn a_product_of_harmonics_may_have_a_shorter_period() {
-        for (texts, expected) in [
-            (&["x'' + x = F*cos(omega*t + 1/3)"][..], Some("omega")),
-            (&["x'' + x = cos(omega*t) + a*cos(3/2*omega*t)"], Some("1/2*omega")),
-            (&["x'' + x = F*(2*cos(3*t/5)^2 - 1)"], Some("6/5")),
-            (&["x'' + x = F*cos(t)^2"], Some("2")),
-            (&["x'' + x = x*abs(cos(t))"], Some("2")),
-            (&["x'' + x = cos(t)*cos(t/3)"], Some("2/3")),
-            (&["x'' + x = cos(t)*cos(t/3 + p)"], Some("2/3")),
-            (&["x'' + x = cos(t)*(x + cos(t/3))"], Some("1/3")),
-            (&["x'' + x = 16*cos(t)^5 - 20*cos(t)^3 + 5*cos(t)"], Some("5")),
-            (&["x'' + sign(x' - cos(t)) + x = 0"], Some("1")),
-            (&["x'' + sin(x + cos(t)^2) = 0"], Some("2")),
-            (&["x'' + x = cos(t)^2 + sin(t)^2"], None),
-            (&["x'' + x = cos(t) + cos(omega*t)"], None),
-            (&["x'' + x = 0"], None),
-            (&["x'' + x = cos((3 + eps)*t)*cos((3 + eps)*t + 1)"], Some("2*(3 + eps)")),
-            (&["x'' + x = cos(2*t)", "y'' + 2*y = x - cos(3*t)"], Some("1")),
-            (&["x'' + x = cos(t)", "y'' + y = x - cos(t)"], Some("1")),
-        ] {
-            let names = Names::any("eps").of_system(texts.iter().copied());
-            let of = |text: &&str| parse_equation(text, &names);
-            let list: Vec<Expression> = texts.iter().map(of).collect::<Result<_, _>>().unwrap();
-            let found = frequency(&list.iter().collect::<Vec<_>>(), "eps");
-            let found = found.map(|frequency| frequency.print("eps", Style::Text));
-            assert_eq!(found.as_deref(), expected, "{texts:?}");
-        }
-    }
-}

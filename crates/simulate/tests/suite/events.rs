@@ -184,6 +184,10 @@ fn sliding_in_one_dimension() {
     let squared = number(1, 2) - sign() - sign() * sign() * number(1, 4);
     let outcome = run(&model(squared), &[1.0], 5.0);
     assert_eq!(outcome.err(), Some(SimulateError::NotAffine { switch: 0 }));
+    // At rest in x = 0 of x'' = -sign x the sign is not in the rate x' of x.
+    let model = Model::second_order(&(Expression::ACCELERATION + sign())).unwrap();
+    let outcome = run(&model, &[0.0, 0.0], 1.0);
+    assert!(matches!(outcome, Err(SimulateError::HigherSliding { switch: 0, .. })), "{outcome:?}");
 }
 
 #[test]
