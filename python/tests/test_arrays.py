@@ -91,14 +91,17 @@ def test_ctrl_c_stops_arrays(calls: dict[str, Callable[..., Any]], name: str, po
     begin = time.perf_counter()
     calls[name](points)
     whole = time.perf_counter() - begin
-    # A look at the signals after the call, or between its two parts, comes too late.
-    pressed = threading.Timer(0.15, signal.raise_signal, [signal.SIGINT])
-    begin = time.perf_counter()
-    pressed.start()
-    with pytest.raises(KeyboardInterrupt):
-        calls[name](points)
-        pressed.join()
-    assert time.perf_counter() - begin < max(0.75 * whole, 0.3)
+    # A look at the signals after the call, or between its two parts, comes too late; a busy machine may, too.
+    for _ in range(6):
+        pressed = threading.Timer(0.05, signal.raise_signal, [signal.SIGINT])
+        begin = time.perf_counter()
+        pressed.start()
+        with pytest.raises(KeyboardInterrupt):
+            calls[name](points)
+            pressed.join()
+        if time.perf_counter() - begin < 0.75 * whole:
+            return
+    pytest.fail("never before the end of the work")
 
 
 @pytest.mark.parametrize("verb", ["solution", "solution_function"])

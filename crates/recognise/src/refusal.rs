@@ -148,8 +148,10 @@ pub enum Refusal {
     /// Several forces, all zero.
     #[error("every harmonic force is zero at these values, and which of them grows is open")]
     SilentForces,
-    /// The unperturbed equation has no saddle with an orbit that returns or leads to another.
-    #[error("no homoclinic or heteroclinic orbit of the unperturbed equation was found")]
+    /// The unperturbed equation has no hyperbolic saddle with an orbit that returns or leads to another.
+    #[error(
+        "no homoclinic or heteroclinic orbit of a hyperbolic saddle of the unperturbed equation was found"
+    )]
     NoOrbit,
     /// The unperturbed orbit is no power of sech.
     #[error(

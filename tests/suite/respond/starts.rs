@@ -43,12 +43,17 @@ fn starts_in_the_unit_of_frequency() {
 #[test]
 fn a_start_at_the_rim_is_undecided() {
     let rim = "x'' + x + eps*(x^3 + x'/20) = 8*cos((3 + eps*s)*t)";
+    let thin = "x'' + x + eps*(x'/5 + x^3) = 3*cos(3*(1 + eps*s)*t)";
     let rest = "x'' + x + eps*(x'/10 - x*cos(2*t) + x^3 + x^2) = 5*eps*cos(5*t)";
     for (equation, set, start, order) in [
         (rim, &[("eps", "1/20"), ("s", "5")][..], "0,0", 3),
         (rest, &[("eps", "1/10")], "0,0", 2),
         (rest, &[("eps", "1/10")], "-1/100,0", 2),
         (rest, &[("eps", "1/10")], "-1/50,0", 2),
+        // In time a third of the frequency, not rest (DOP853, 450 periods): neighbours along the axes go to rest, others do not.
+        (thin, &[("eps", "1/5"), ("s", "1/2")], "1.43,-0.76", 2),
+        (thin, &[("eps", "1/5"), ("s", "1/2")], "1.43,-0.76", 3),
+        (thin, &[("eps", "1/5"), ("s", "1/2")], "1.14,0.35", 2),
     ] {
         let start = Some(Respond::read_start(start).unwrap());
         let found = ask(equation, set, &Respond { start, ..to_order(order) });

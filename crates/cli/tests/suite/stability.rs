@@ -180,6 +180,18 @@ fn small_things() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("without a value: omega, k, c"));
 }
 
+/// A force of the other sign is one half a period later: the verdicts at P0 and -P0 are those of single points.
+#[test]
+fn charts_go_over_the_sign_of_the_force() {
+    let folder = Folder::new("chart-sign");
+    let sweep = ["--sweep", "P0=-2..2:5", "--sweep", "A=1/10..1/5:2", "--plot"];
+    json(&[&sweep[..], &[&folder.path("x.csv")]].concat());
+    let text = folder.text("x.csv");
+    let row = |p: &str| text.lines().find_map(|line| line.strip_prefix(&format!("{p},0.1,")));
+    assert_eq!([row("-2"), row("-1"), row("0")], [row("2"), row("1"), Some(",")], "{text}");
+    assert!(row("1").is_some_and(|row| row.len() > 1), "{text}");
+}
+
 /// Parameters that those of section 2 are computed from: a chart over them is made of the verdicts
 /// at its points.
 #[test]

@@ -354,9 +354,12 @@ impl Subject<'_> {
         };
         let (fate, state, amplitudes) = goes(&start);
         let moved = self.start_error(&start);
-        let neighbours = (0..2 * start.len()).map(|k| {
+        // In eight directions of every w: the basins are as thin as spirals.
+        let neighbours = (0..4 * start.len()).map(|k| {
             let mut start = start.clone();
-            start[k / 2] += if k % 2 == 0 { moved } else { -moved };
+            let (sin, cos) = (std::f64::consts::FRAC_PI_4 * (k % 8) as f64).sin_cos();
+            start[k / 8 * 2] += moved * cos;
+            start[k / 8 * 2 + 1] += moved * sin;
             start
         });
         // Beyond the box the slow flow says nothing of the oscillator; that of a larger box that was asked for is trusted.

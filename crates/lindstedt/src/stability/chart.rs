@@ -76,7 +76,7 @@ pub(super) fn compute(
     check_room(points, bytes, work)?;
     let plan = plan(subject, sweep);
     let part = plan.part;
-    let fast = sweep.iter().all(|range| range.known.is_some() && range.axis.is_equidistant());
+    let fast = sweep.iter().all(|range| is_canonical(range) && range.axis.is_equidistant());
     let grid = if fast {
         kernel(subject, sweep, &plan, work)?
     } else {
@@ -100,6 +100,16 @@ pub(super) fn compute(
         },
         finished,
     }))
+}
+
+/// Whether the values are those of a canonical parameter: a force or a frequency that is negative belongs to others.
+fn is_canonical(range: &Range) -> bool {
+    range.known.is_some_and(|known| match known {
+        Swept::Force | Swept::Omega | Swept::Alpha => {
+            range.axis.doubles().iter().all(|value| *value > 0.0)
+        }
+        _ => true,
+    })
 }
 
 /// The question to the kernel; what is no canonical parameter has an axis in name only.
