@@ -353,15 +353,7 @@ impl Subject<'_> {
             }
         };
         let (fate, state, amplitudes) = goes(&start);
-        let moved = self.start_error(&start);
-        // In eight directions of every w: the basins are as thin as spirals.
-        let neighbours = (0..4 * start.len()).map(|k| {
-            let mut start = start.clone();
-            let (sin, cos) = (std::f64::consts::FRAC_PI_4 * (k % 8) as f64).sin_cos();
-            start[k / 8 * 2] += moved * cos;
-            start[k / 8 * 2 + 1] += moved * sin;
-            start
-        });
+        let neighbours = neighbours(&start, self.start_error(&start));
         // Beyond the box the slow flow says nothing of the oscillator; that of a larger box that was asked for is trusted.
         let trusted = self.amplitude.map_or(reach, |a| reach.max(a / 2.0));
         let outside = |w: &[f64]| w.chunks_exact(2).any(|w| w[0].hypot(w[1]) > trusted);
@@ -382,6 +374,17 @@ impl Subject<'_> {
         };
         Ok(Destination { fate, state, amplitudes, decided: doubt.is_none(), doubt })
     }
+}
+
+/// The states at this distance of one, in eight directions of every w: basins are as thin as spirals.
+fn neighbours(start: &[f64], distance: f64) -> impl Iterator<Item = Vec<f64>> {
+    (0..4 * start.len()).map(move |k| {
+        let mut start = start.to_vec();
+        let (sin, cos) = (std::f64::consts::FRAC_PI_4 * (k % 8) as f64).sin_cos();
+        start[k / 8 * 2] += distance * cos;
+        start[k / 8 * 2 + 1] += distance * sin;
+        start
+    })
 }
 
 /// What may be missing of branches.
