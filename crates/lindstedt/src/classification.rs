@@ -84,7 +84,9 @@ pub(crate) fn place(file: &ProblemFile, path: &str, term: Option<&Expression>) -
 /// What an equation without a small parameter misses.
 #[must_use]
 pub fn marks(small: &str) -> String {
-    format!("a factor {small} marks the small terms; `simulate` takes it as it is")
+    format!(
+        "a factor {small} marks the small terms; `simulate` takes it as it is, and `evaluate --prove` where it is smooth"
+    )
 }
 
 /// Refuses, before any work, a file whose equation the expansion with the condition asked for does
@@ -204,7 +206,8 @@ fn next_best(
         Some(AVERAGES)
     } else if in_numbers {
         Some(
-            "in numbers: `lindstedt simulate`, and `derive --tier collocation` for forces of x alone",
+            "in numbers: `lindstedt simulate`; `evaluate --prove` where it is smooth; `derive --tier collocation` for k*x and \
+             forces of x alone",
         )
     } else if nothing_small {
         None

@@ -255,6 +255,19 @@ fn section(asked: Option<Section>, wanted: bool, setup: &Setup) -> Result<Option
         let message = "the impacts of the orbit come at the times of this section, where x' jumps";
         return Err(Refused::usage("section", message, "--section impact, or --state").into());
     }
+    if let (Some(Section::Stroboscopic), None, Some(frequency)) =
+        (section, &setup.flow.forcing, &setup.frequency)
+    {
+        let names = frequency.parameters();
+        let unset: Vec<&str> = names
+            .iter()
+            .map(|name| &**name)
+            .filter(|name| setup.flow.parameters.get(name).is_none())
+            .collect();
+        let message = format!("{}: the frequency of the force has no value", setup.name);
+        let hint = format!("--set {}=VALUE", unset.join("=VALUE --set "));
+        return Err(Refused::usage("section", message, hint).into());
+    }
     let reason = match section {
         Some(Section::Stroboscopic) if setup.flow.forcing.is_none() => "no force with one period",
         Some(Section::Impact) if !setup.wall => "no wall",

@@ -153,7 +153,9 @@ impl Case<'_> {
         if let (Some(parameters), None, None) = (&impacting, &state, &history) {
             let usual = || swept.then(|| Rational::from(SWEPT_PERTURBATION));
             let perturbation = start.perturbation.clone().or_else(usual);
-            return self.on_orbit(Orbit::of(parameters, self.bits)?, perturbation.as_ref());
+            let asked = start.perturbation.is_some();
+            let orbit = Orbit::of(parameters, self.bits)?;
+            return self.on_orbit(orbit, perturbation.as_ref(), asked);
         }
         if start.perturbation.is_some() {
             return Err(self.no_orbit(impacting.is_some()));
@@ -175,7 +177,12 @@ impl Case<'_> {
 
     /// Just after an impact, with the orbit as history: the flight before t = 0 began one period
     /// earlier from the same state.
-    fn on_orbit(&mut self, orbit: Orbit, perturbation: Option<&Rational>) -> Result<Begin, Error> {
+    fn on_orbit(
+        &mut self,
+        orbit: Orbit,
+        perturbation: Option<&Rational>,
+        asked: bool,
+    ) -> Result<Begin, Error> {
         let advance = named(&mut self.parameters, "advance", orbit.advance.clone());
         let mut held = self.flying();
         held.extend(self.walls().flat_map(Expression::parameters));
@@ -195,7 +202,12 @@ impl Case<'_> {
         self.orbit = Some(orbit);
         Ok(Begin {
             state: [x, v].map(Quantity::Float),
-            chosen: Some("on the periodic orbit, t = 0 just after an impact"),
+            chosen: Some(match (perturbation, asked) {
+                (Some(_), false) => {
+                    "on the periodic orbit, t = 0 just after an impact, 1/1000 of the impact velocity added"
+                }
+                _ => "on the periodic orbit, t = 0 just after an impact",
+            }),
             history: Some((history, "the periodic orbit")),
         })
     }
