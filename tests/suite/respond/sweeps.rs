@@ -141,6 +141,22 @@ fn a_jump_is_followed_to_its_end() {
     assert!((read - known).abs() < 5e-4, "{read} {known}");
 }
 
+/// A damping of eps^3 does not come to rest within the periods that are looked at: no values, and a remark.
+#[test]
+fn what_does_not_settle_is_said() {
+    let equation = "x'' + x + eps*(mu*x' + x^3) = eps*cos(omega*t)/2";
+    let remarks = |mu: &str| {
+        let case = Oscillator::parse(equation).unwrap().set("eps", "1/10").unwrap();
+        let case = case.set("mu", mu).unwrap();
+        let sweep = Some(Axis::parse("omega=1,21/20").unwrap());
+        let question = Respond { sweep, follow: true, ..to_order(1) };
+        let answer = case.respond(&question, &Work::default()).unwrap();
+        let said = |remark: &lindstedt::Remark| remark.0.starts_with("--follow: at 4 of 4 values");
+        answer.remarks.iter().any(said)
+    };
+    assert_eq!(["1/100", "1/5"].map(remarks), [true, false]);
+}
+
 /// Locked motion in closed branches between the values of the sweep: that of one unknown is found, of several it is remarked that
 /// one may be missing.
 #[test]

@@ -394,6 +394,14 @@ fn missing(value: &Response) -> Vec<Remark> {
     if broken > 0 {
         remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
     }
+    let readings = value.followed.iter().flatten().flatten();
+    let open = readings.clone().filter(|reading| reading.amplitudes.is_none()).count();
+    if open > 0 {
+        remarks.push(Remark(format!(
+            "--follow: at {open} of {} values the motion did not settle, and the next begins where it came to",
+            readings.count()
+        )));
+    }
     if value.no_closed_missing == Some(false) {
         let text = "closed branches that lie between the values searched may be missing: a list of values, --sweep NAME=V1,V2,..., is searched at each of them";
         remarks.push(Remark(text.to_owned()));

@@ -3,7 +3,9 @@
 use super::{Present, parameter, stability_word, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
-use lindstedt::respond::{Change, Corner, Destination, Estimate, Point, Response, State, States};
+use lindstedt::respond::{
+    Change, Corner, Destination, Estimate, Point, Reading, Response, State, States,
+};
 use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number, Standing};
 
@@ -148,17 +150,20 @@ fn jumps(value: &Response, name: &str) -> Option<Document> {
     let followed = value.followed.as_ref()?;
     let formula = Text::from(Formula::new(name, latex_name(name)));
     let head: [Text; 4] = ["".into(), formula, "amplitudes".into(), "then".into()];
-    let table = followed.iter().zip(FOLLOWED).fold(Table::new(head), |table, (list, (word, _))| {
+    let row = |(list, (word, _)): (&Vec<Reading>, (&str, Mark))| {
         let of = |k: usize| list[k].amplitudes.iter().flatten().map(|a| a.value);
         let step =
             |k: &usize| of(k - 1).zip(of(*k)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let Some(k) = (1..list.len()).max_by(|a, b| step(a).total_cmp(&step(b))) else {
-            return table;
-        };
+        let settled = |k: usize| list[k].amplitudes.is_some();
+        let steps = (1..list.len()).filter(|k| settled(k - 1) && settled(*k));
+        let k = steps.max_by(|a, b| step(a).total_cmp(&step(b)))?;
         let shown = |k| of(k).map(|a| format!("{a:.6}")).collect::<Vec<_>>().join(", ");
         let at = format!("{} .. {}", list[k - 1].value.value, list[k].value.value);
-        table.row([word.to_owned(), at, shown(k - 1), shown(k)])
-    });
+        Some([word.to_owned(), at, shown(k - 1), shown(k)])
+    };
+    let mut rows = followed.iter().zip(FOLLOWED).filter_map(row).peekable();
+    rows.peek()?;
+    let table = rows.fold(Table::new(head), Table::row);
     Some(
         Document::default()
             .heading("the equation itself, integrated: its largest step")
