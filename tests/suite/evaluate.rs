@@ -20,6 +20,8 @@ fn terms_of_high_powers_are_in_the_errors() {
         ("x'' + x - eps*x^5 + 30*eps^8*x*x'^2 = 0", "-1/2", None, 5.413_345_753_19),
         ("x'' + x + eps*x^3/10 + 50*eps^20*x^5 = 0", "4/5", Some(12), 5.294_344_069_43),
         ("x'' + x + eps*x^5/10 + 10*eps^7*x^3 = 0", "1", Some(20), 2.184_249_150_05),
+        // Duffing's equation with 81/256 in the place of eps.
+        ("x'' + x + (3*eps/2)^4*x^3 = 0", "1/2", None, 5.652_947_756_47),
         ("x'' + x + eps*(x^2-1)*x' - 10*eps^3*x^3 = 0", "1/4", Some(16), 9.245_666_837_93),
     ];
     for (equation, eps, order, truth) in cases {

@@ -68,6 +68,20 @@ pub struct Evaluate {
 /// Powers of the small parameter from which they are put in.
 const HIGH_POWER: i64 = 3;
 
+/// (2 eps)^5 as 2^5 eps^5.
+fn distributed(e: &Expression) -> Expression {
+    e.map(&|e| match e {
+        Expression::Power(base, n) if e.contains(&Expression::Small) => match &**base {
+            Expression::Product(factors) if n.as_number().is_some_and(|n| n.is_integer()) => {
+                let power = |factor: &Expression| distributed(factor).pow((**n).clone());
+                Some(Expression::Product(factors.iter().map(power).collect()))
+            }
+            _ => None,
+        },
+        _ => None,
+    })
+}
+
 impl Default for Evaluate {
     /// A quick order, the best method, no times, phase 0.
     fn default() -> Self {
@@ -301,7 +315,7 @@ impl Oscillator {
             }
             _ => None,
         };
-        self.problem().equation.nodes().filter_map(power).max()
+        distributed(&self.problem().equation).nodes().filter_map(power).max()
     }
 
     /// The same equation at this value q of the small parameter, with eps q^(k-1) for high powers eps^k: the estimates of
@@ -318,7 +332,7 @@ impl Oscillator {
             }
             _ => None,
         };
-        let equation = problem.equation.map(&put_in).canonical();
+        let equation = distributed(&problem.equation).map(&put_in).canonical();
         let remark = format!(
             "{0}^{power} stands as {0} times a number, its value here: a series in {0} would have it too seldom to tell its error",
             problem.small,
