@@ -23,6 +23,9 @@ fn terms_of_high_powers_are_in_the_errors() {
         // Duffing's equation with 81/256 in the place of eps.
         ("x'' + x + (3*eps/2)^4*x^3 = 0", "1/2", None, 5.652_947_756_47),
         ("x'' + x + eps*(x^2-1)*x' - 10*eps^3*x^3 = 0", "1/4", Some(16), 9.245_666_837_93),
+        ("x'' + x + eps*x^3/10 + 50*(eps+eps^2)^9*x^5 = 0", "2/5", Some(8), 5.745_074_502_457),
+        ("x'' + x + eps*x^3/10 + 50*(eps^2+eps^3)^10*x^5 = 0", "3/5", Some(12), 5.812_622_221_658),
+        ("x'' + x + eps*x^3/10 + (2*eps*x + eps*x^3)^9 = 0", "2/5", None, 3.878_929_884_270),
     ];
     for (equation, eps, order, truth) in cases {
         let case = Oscillator::parse(equation).unwrap().set("eps", eps).unwrap();
@@ -34,6 +37,8 @@ fn terms_of_high_powers_are_in_the_errors() {
         let off = (period.decimal.parse::<f64>().unwrap() - truth).abs();
         assert!(off <= error + 1e-11 && error < 1e-4, "{equation}: off by {off:e}, +- {error:e}");
         assert!(answer.remarks.iter().any(|remark| remark.0.contains("stands as eps times")));
+        let irrational = case.clone().set("eps", "pi/6").unwrap().evaluate(&question, &work);
+        assert_eq!(irrational.map(drop).unwrap_err().code(), "high-power");
         let function = case.frequency_function(&question, &work).map(drop).unwrap_err();
         assert_eq!(function.code(), "high-power");
     }

@@ -44,6 +44,12 @@ fn products_of_harmonics_have_their_period() {
         ("x'' + {} + sin(x + cos(t)^2) = 0", 2.0),
         ("x'' + {} = cos((3 + eps)*t)*cos((3 + eps)*t + 1)", 6.5),
         ("x'' + {} = cos(t) + x*sign(x - cos(t))/5", 1.0),
+        // What acts for one sign of a state or of a parameter, or for a moment.
+        ("x'' + {} = (abs(x) - x)*cos(t)/4 + cos(2*t)", 1.0),
+        ("x'' + {} = (1 - sign(x'))*cos(t)/4 + cos(2*t)", 1.0),
+        ("x'' + {} = (sign(x - 2) + 1)*cos(t) + cos(2*t)", 1.0),
+        ("x'' + {} = sign(cos(t) - 999/1000) + cos(2*t)", 1.0),
+        ("x'' + {} = sign(cos(t))*cos(t)", 2.0),
     ] {
         let equation = equation.replace("{}", eps);
         let found = json(&[&["simulate", &equation], &section[..]].concat());

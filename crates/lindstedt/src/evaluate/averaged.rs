@@ -61,7 +61,7 @@ impl Oscillator {
         self.without_pi()?;
         let free = self.clone().under(Condition::FreeAmplitude)?;
         free.check()?;
-        let (case, remark) = free.with_order_parameter().with_powers_put_in();
+        let (case, remark) = free.with_order_parameter().with_powers_put_in()?;
         let mut remarks = self.remarks().to_vec();
         remarks.extend(remark);
         let from = match &question.start {

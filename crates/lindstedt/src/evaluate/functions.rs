@@ -7,6 +7,7 @@
 use super::code::{escaped, number};
 use super::compiled::few_harmonics;
 use super::{Evaluate, Language};
+use crate::refusal::Refused;
 use crate::{Answer, Error, Oscillator, Work};
 use lindstedt_evaluation::compiled::Varied;
 use lindstedt_evaluation::{Carried, Expansion};
@@ -68,6 +69,13 @@ impl Oscillator {
     ) -> Result<Answer<ExpansionCode>, Error> {
         few_harmonics(harmonics)?;
         let order = question.order.unwrap_or(ORDER);
+        let least = self.high_power()?.map_or(0, |power| power as usize);
+        if order < least {
+            let message = format!("order {order} has nothing of a term of order {least}");
+            return Err(
+                Refused::no_answer("high-power", message, format!("--order {least}")).into()
+            );
+        }
         let make = |varied: &Varied<'_>| Expansion::new(varied, order, harmonics, work);
         let varies = |it: &Expansion| (it.small.clone(), it.carried != Carried::Not, it.order);
         let found = self.function(make, varies)?;

@@ -20,6 +20,7 @@ use code::sampled;
 pub use code::{Language, SolutionCode};
 use compiled::Way;
 pub use functions::ExpansionCode;
+use lindstedt_equation::monomials::{Terms, add, expand};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{
@@ -66,21 +67,7 @@ pub struct Evaluate {
 }
 
 /// Powers of the small parameter from which they are put in.
-const HIGH_POWER: i64 = 3;
-
-/// (2 eps)^5 as 2^5 eps^5.
-fn distributed(e: &Expression) -> Expression {
-    e.map(&|e| match e {
-        Expression::Power(base, n) if e.contains(&Expression::Small) => match &**base {
-            Expression::Product(factors) if n.as_number().is_some_and(|n| n.is_integer()) => {
-                let power = |factor: &Expression| distributed(factor).pow((**n).clone());
-                Some(Expression::Product(factors.iter().map(power).collect()))
-            }
-            _ => None,
-        },
-        _ => None,
-    })
-}
+const HIGH_POWER: u32 = 3;
 
 impl Default for Evaluate {
     /// A quick order, the best method, no times, phase 0.
@@ -256,7 +243,7 @@ impl Oscillator {
         self.without_pi()?;
         self.check()?;
         let (case, mut remarks) = self.placed()?;
-        let (case, remark) = case.with_powers_put_in();
+        let (case, remark) = case.with_powers_put_in()?;
         remarks.extend(remark);
         Ok((case, remarks))
     }
@@ -306,43 +293,65 @@ impl Oscillator {
         self.clone().with(&problem.small, Exact::Rational(Rational::from(1)))
     }
 
-    /// The highest power of the small parameter in the equation, where it is so high that a series to some order has few
-    /// terms in which it enters.
-    pub(crate) fn high_power(&self) -> Option<i64> {
-        let power = |e: &Expression| match e {
-            Expression::Power(base, n) if **base == Expression::Small => {
-                n.as_number()?.numer().to_i64().filter(|n| *n >= HIGH_POWER)
+    /// The highest power of the small parameter in the equation multiplied out, where it is so high that a series to some
+    /// order has few terms in which it enters.
+    ///
+    /// # Errors
+    /// [`Refused`] where it has too many terms to tell.
+    pub(crate) fn high_power(&self) -> Result<Option<u32>, Error> {
+        let equation = &self.problem().equation;
+        match expand(equation) {
+            Some(all) => {
+                let orders = all.terms.into_keys().map(|m| m.order);
+                Ok(orders.max().filter(|power| *power >= HIGH_POWER))
             }
-            _ => None,
-        };
-        distributed(&self.problem().equation).nodes().filter_map(power).max()
+            None if !equation.contains(&Expression::Small) => Ok(None),
+            None => {
+                let message = "multiplied out the equation has too many terms to see its powers of the small parameter";
+                let hint = "`evaluate --prove`, `lindstedt simulate`";
+                Err(Refused::no_answer("high-power", message, hint).into())
+            }
+        }
     }
 
     /// The same equation at this value q of the small parameter, with eps q^(k-1) for high powers eps^k: the estimates of
     /// a series know nothing of a term that enters it once or twice, or not at all.
-    pub(crate) fn with_powers_put_in(self) -> (Self, Option<Remark>) {
+    pub(crate) fn with_powers_put_in(self) -> Result<(Self, Option<Remark>), Error> {
         let problem = self.problem();
-        let value = self.given().get(&*problem.small).and_then(Exact::as_rational).cloned();
-        let (Some(power), Some(value)) = (self.high_power(), value) else { return (self, None) };
-        let put_in = |e: &Expression| match e {
-            Expression::Power(base, n) if **base == Expression::Small => {
-                let n = n.as_number().filter(|n| n.is_integer())?.numer().to_u32()?;
-                let less = n.checked_sub(1).filter(|_| i64::from(n) >= HIGH_POWER)?;
-                Some(Expression::Small * Expression::Number(value.clone().pow(less)))
-            }
-            _ => None,
+        let small = problem.small.clone();
+        let (Some(power), Some(value)) = (self.high_power()?, self.given().get(&*small)) else {
+            return Ok((self, None));
         };
-        let equation = distributed(&problem.equation).map(&put_in).canonical();
+        let Some(value) = value.as_rational().cloned() else {
+            let message =
+                format!("a series in {small} has {small}^{power} too seldom to tell its error");
+            let hint = "a rational value; `evaluate --prove`, `lindstedt simulate`";
+            return Err(Refused::no_answer("high-power", message, hint).into());
+        };
+        if value.is_zero() {
+            return Ok((self, None));
+        }
+        let Some(mut all) = expand(&problem.equation) else { return Ok((self, None)) };
+        let mut terms = Terms::new();
+        for (mut monomial, mut q) in std::mem::take(&mut all.terms) {
+            if monomial.order >= HIGH_POWER {
+                q *= value.clone().pow(monomial.order - 1);
+                monomial.order = 1;
+            }
+            add(&mut terms, monomial, &q);
+        }
+        let terms = terms.iter().map(|(monomial, q)| all.tree(monomial, q)).collect();
+        let equation = Expression::Sum(terms).canonical();
         let remark = format!(
-            "{0}^{power} stands as {0} times a number, its value here: a series in {0} would have it too seldom to tell its error",
-            problem.small,
+            "{small}^{power} stands as {small} times a number, its value here: a series in {small} would have it too seldom to \
+             tell its error"
         );
-        (self.with_equation(equation), Some(Remark(remark)))
+        Ok((self.with_equation(equation), Some(Remark(remark))))
     }
 
     /// Refuses functions of the small parameter whose series could not tell their error.
     pub(crate) fn refuse_high_powers(&self) -> Result<(), Error> {
-        let Some(power) = self.high_power() else { return Ok(()) };
+        let Some(power) = self.high_power()? else { return Ok(()) };
         let small = &self.problem().small;
         let message =
             format!("a series in {small} has {small}^{power} too seldom to tell its error");

@@ -137,7 +137,7 @@ impl Oscillator {
             let case = case.settled()?.0;
             let setting = case.setting()?;
             // With powers put in every value has an equation of its own.
-            let own = self.high_power().is_some();
+            let own = self.high_power()?.is_some();
             let setting = if own { setting } else { setting.sharing(&known) };
             let found = case.period_of(setting, question, work)?;
             let (period, frequency) = (found.period, found.frequency);

@@ -315,7 +315,7 @@ impl Run<'_> {
             stationary,
             estimate: "median of K over 100 frequencies in doubles; error: half the distance of the \
                        quartiles; several bands look regular, so every 2nd, 3rd, 4th point is tested \
-                       too",
+                       too; five bands or more may look regular",
             k,
         })
     }

@@ -3,8 +3,8 @@
 use super::equation::without_phases;
 use super::history::{Evaluator, at_time};
 use crate::Exact;
-use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
+use lindstedt_equation::{Expression, Function};
 use lindstedt_expand::Excitation;
 use lindstedt_simulate::{Parameters, Quantity};
 use rug::{Float, Rational};
@@ -28,15 +28,8 @@ const MOMENT: &str = "the moment";
 pub(super) fn frequency(equations: &[&Expression], small: &str) -> Option<Expression> {
     let plain = equations.iter().map(|e| without_phases(e, small)).collect();
     let written = Excitation::of(&Expression::Sum(plain)).ok()?.frequency?;
-    let free = |e: &Expression| match e {
-        Expression::Small => Some(Expression::parameter(small)),
-        Expression::Unknown(_) => {
-            Some(Expression::parameter(&format!("now {}", e.print(small, Style::Text))))
-        }
-        _ => None,
-    };
     let moment = Expression::parameter(MOMENT);
-    let forces: Vec<_> = equations.iter().map(|e| at_time(&e.map(&free), &moment)).collect();
+    let forces: Vec<_> = equations.iter().map(|e| at_time(&generic(e, small), &moment)).collect();
     let mut parts = 1;
     for part in PARTS {
         while parts < MOST && repeat(&forces, &written, parts * part).unwrap_or(false) {
@@ -44,6 +37,23 @@ pub(super) fn frequency(equations: &[&Expression], small: &str) -> Option<Expres
         }
     }
     (parts < MOST).then(|| (written * i64::from(parts)).canonical())
+}
+
+/// The equation with states and the small parameter as parameters, and with 1 + w^2 and w + w^3 for |w| and sign w: even and
+/// odd as these are, and analytic, so that what acts for one sign of w only, or for a moment, is seen everywhere.
+fn generic(e: &Expression, small: &str) -> Expression {
+    e.map(&|e| match e {
+        Expression::Small => Some(Expression::parameter(small)),
+        Expression::Unknown(_) => {
+            Some(Expression::parameter(&format!("now {}", e.print(small, Style::Text))))
+        }
+        Expression::Function(Function::Abs, w) => Some(generic(w, small).pow(2) + 1),
+        Expression::Function(Function::Sign, w) => {
+            let w = generic(w, small);
+            Some(w.clone() + w.pow(3))
+        }
+        _ => None,
+    })
 }
 
 /// Whether the forces are the same this part of 2 pi/frequency later; nothing where they have no values.
