@@ -96,7 +96,7 @@ impl<R: Real> Integrator<'_, R> {
             return Err(refused);
         }
         self.phase.modes[index] = mode;
-        let told = self.segment(&length, observer)?;
+        let told = self.segment(&length, false, observer)?;
         self.work.steps += 1;
         self.move_by(&length);
         self.vanishing

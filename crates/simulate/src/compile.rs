@@ -192,7 +192,12 @@ impl<'a, R: Real> Compiler<'a, R> {
             }
             Expression::Power(base, exponent) => self.power(base, exponent)?,
             Expression::Function(function, argument) => {
-                let argument = self.expression(argument)?;
+                let argument = match function {
+                    // sign(w^3) = sign(w), whose zero is simple.
+                    Function::Sign => self.odd_root(argument).unwrap_or((**argument).clone()),
+                    _ => (**argument).clone(),
+                };
+                let argument = self.expression(&argument)?;
                 self.function(*function, argument)
             }
             Expression::Formal(name, _) => {
@@ -202,7 +207,7 @@ impl<'a, R: Real> Compiler<'a, R> {
     }
 
     /// Whether neither states nor the time stand in the expression.
-    fn is_constant(&self, expression: &Expression) -> bool {
+    pub(crate) fn is_constant(&self, expression: &Expression) -> bool {
         match expression {
             Expression::Number(_) | Expression::Small => true,
             Expression::Parameter(name) => !self.names.contains(name),

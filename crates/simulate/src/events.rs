@@ -124,37 +124,60 @@ impl<R: Real> Integrator<'_, R> {
                 }
             }
         }
+        self.section_at_start()
+    }
+
+    /// A section whose function begins the step with another sign than it had.
+    ///
+    /// Where a switch has just been met or slides, a function that vanishes with the switch's argument is zero but for
+    /// rounding errors: after the switch its sign is that of its first coefficient beyond them, and while
+    /// function and derivative are within them the section sleeps.
+    fn section_at_start(&mut self) -> Option<Hit<R::Element>> {
+        let system = self.system;
+        let real = &system.real;
+        let sliding = self.phase.modes.contains(&0);
+        if sliding && !system.sections.is_empty() {
+            self.rounding = Some(self.rounding_errors());
+        }
+        let leading = |row: &[R::Element], skip: usize| {
+            let mut signs = row.iter().skip(skip).map(|c| real.sign(c));
+            signs.find(|sign| *sign != 0).unwrap_or(0)
+        };
         let offset = system.walls.len() + system.switches.len();
         for (index, row) in system.sections.iter().enumerate() {
-            if let Some(switch) = system.switch_of(index) {
-                if self.sides[index] == 0 {
-                    self.sides[index] = self.phase.modes[switch];
-                }
-                continue;
-            }
             let row = self.series.rows.row(*row);
-            let sign = real.sign(&row[0]);
-            let skip = &mut self.vanishing[offset + index];
-            if *skip == 0 && sign == 0 {
-                *skip = row.iter().take_while(|c| real.sign(c) == 0).count();
-            }
-            let side = &mut self.sides[index];
-            if *side == 0 {
-                *side = leading(row.get(*skip..).unwrap_or_default()).unwrap_or(0);
+            let exact = || row.iter().take_while(|c| real.sign(c) == 0).count();
+            let beyond = self.rounding.map(|log2| row.iter().position(|c| real.log2(c) > log2));
+            let (skip, side) = (&mut self.vanishing[offset + index], &mut self.sides[index]);
+            if sliding && beyond.is_some_and(|first| first.is_none_or(|first| first > 1)) {
+                *skip = row.len();
                 continue;
             }
-            // What ends a step on the section exactly, as a switch of the same argument does, was not met within it.
-            let ahead = match sign {
-                0 => leading(row.get(*skip..).unwrap_or_default()).unwrap_or(0),
-                _ if *skip == 0 => sign,
-                _ => *side,
-            };
-            if ahead == -*side {
-                *side = ahead;
-                return hit(Surface::Section(index), ahead);
+            // What ends a step on the section within rounding errors was told, but for that on a switch.
+            let told = *skip > 0;
+            if !told {
+                *skip = beyond.flatten().unwrap_or_else(exact);
+            }
+            let ahead = if told { *side } else { leading(row, *skip) };
+            let known = std::mem::replace(side, if ahead == 0 { *side } else { ahead });
+            if known != 0 && ahead == -known {
+                return Some(Hit {
+                    at: real.zero(),
+                    surface: Surface::Section(index),
+                    after: ahead,
+                });
             }
         }
         None
+    }
+
+    /// log2 of the errors, of rounding and of the step, of all functions of the state at the start of the step.
+    pub(crate) fn rounding_errors(&self) -> f64 {
+        let real = &self.system.real;
+        let rows = (0..self.system.tape.rows()).flat_map(|row| &self.series.rows.row(row)[..2]);
+        let scale = rows.map(|c| real.log2(c)).filter(|log2| *log2 < f64::INFINITY);
+        let relative = self.log2_tolerance.max(-f64::from(real.bits()));
+        scale.fold(f64::NEG_INFINITY, f64::max) + relative + 12.0
     }
 
     /// The first surface met in (0, h].
@@ -261,7 +284,8 @@ impl<R: Real> Integrator<'_, R> {
             Surface::Limit(switch) => self.release(switch, hit)?,
             Surface::Section(section) => {
                 let offset = self.system.walls.len() + self.system.switches.len();
-                self.vanishing[offset + section] = 1;
+                let skip = &mut self.vanishing[offset + section];
+                *skip = (*skip).max(1);
                 EventKind::Section { section, rising: hit.after > 0 }
             }
         };
@@ -270,23 +294,10 @@ impl<R: Real> Integrator<'_, R> {
         {
             return Ok(ControlFlow::Continue(()));
         }
-        let mut told = self.tell(kind, f64::NEG_INFINITY, observer);
-        // While a switch slides its argument is zero but for rounding errors: a section with that function is
-        // crossed when the sign is another than the last one.
-        if let EventKind::Switching { switch, to, .. } = kind
-            && to != 0
-        {
-            for section in 0..self.system.sections.len() {
-                if self.system.switch_of(section) == Some(switch) {
-                    let side = std::mem::replace(&mut self.sides[section], to);
-                    let kind = EventKind::Section { section, rising: to > 0 };
-                    if side == -to && self.tell(kind, f64::NEG_INFINITY, observer).is_break() {
-                        told = ControlFlow::Break(());
-                    }
-                }
-            }
+        if matches!(kind, EventKind::Switching { .. }) && !self.system.sections.is_empty() {
+            self.rounding = Some(self.rounding_errors());
         }
-        Ok(told)
+        Ok(self.tell(kind, f64::NEG_INFINITY, observer))
     }
 
     pub(crate) fn tell(

@@ -71,6 +71,8 @@ pub struct Integrator<'s, R: Real> {
     /// switches, sections.
     pub(crate) vanishing: Vec<usize>,
     pub(crate) sides: Vec<i8>,
+    /// log2 of the rounding errors of sections, where the step starts on a switch.
+    pub(crate) rounding: Option<f64>,
     pub(crate) past: Option<Past<R>>,
     pub(crate) finder: RootFinder<R::Element>,
     pub(crate) polynomial: Vec<R::Element>,
@@ -168,6 +170,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             phase: Phase { modes: vec![1; system.switches.len()], contact: None },
             vanishing: vec![0; surfaces],
             sides: vec![0; system.sections.len()],
+            rounding: None,
             past,
             finder: RootFinder::new(),
             polynomial: Vec::new(),
@@ -226,6 +229,7 @@ impl<'s, R: Real> Integrator<'s, R> {
         self.rebound = None;
         self.phase.contact = None;
         self.vanishing.iter_mut().for_each(|skip| *skip = 0);
+        self.rounding = None;
         R::begin(self)
     }
 
@@ -382,7 +386,9 @@ impl<'s, R: Real> Integrator<'s, R> {
         }
         self.work.steps += 1;
         // The state is consistent whenever the observer breaks off: the step is finished first.
-        let told = self.segment(&h, observer)?;
+        let switches = |hit: &Hit<_>| matches!(hit.surface, Surface::Switch(_) | Surface::Limit(_));
+        let told = self.segment(&h, hit.as_ref().is_some_and(switches), observer)?;
+        self.rounding = None;
         self.move_by(&h);
         if last {
             self.clock = target.clone();

@@ -204,6 +204,24 @@ impl<R: Real> Compiler<'_, R> {
         Ok(self.product(power, sign))
     }
 
+    /// c w of an expression c w^n with odd n > 1.
+    pub(crate) fn odd_root(&self, expression: &Expression) -> Option<Expression> {
+        match expression {
+            Expression::Power(base, n) => {
+                let n = small_integer(&self.rational(n)?).filter(|n: &i32| *n > 1 && n % 2 == 1);
+                n.map(|_| self.odd_root(base).unwrap_or((**base).clone()))
+            }
+            Expression::Product(factors) => {
+                let mut moving = factors.iter().filter(|factor| !self.is_constant(factor));
+                let (Some(w), None) = (moving.next(), moving.next()) else { return None };
+                let root = self.odd_root(w)?;
+                let constants = factors.iter().filter(|factor| self.is_constant(factor)).cloned();
+                Some(Expression::Product(constants.chain([root]).collect()))
+            }
+            _ => None,
+        }
+    }
+
     /// The value of a constant expression, if it is rational.
     fn rational(&self, expression: &Expression) -> Option<Rational> {
         match expression {

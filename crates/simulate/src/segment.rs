@@ -13,6 +13,7 @@ impl<R: Real> Integrator<'_, R> {
     pub(crate) fn segment(
         &mut self,
         h: &R::Element,
+        switches: bool,
         observer: &mut Observer<'_, R>,
     ) -> Result<ControlFlow<()>, SimulateError> {
         let system = self.system;
@@ -34,26 +35,28 @@ impl<R: Real> Integrator<'_, R> {
             },
         };
         let told = observer(&Report::Segment(segment));
-        let crossed = self.cross_sections(h, observer)?;
+        let crossed = self.cross_sections(h, switches, observer)?;
         Ok(if told.is_break() { told } else { crossed })
     }
 
-    /// Crossings of the user's sections in (0, h].
+    /// Crossings of the user's sections in (0, h]; at the end of a step that ends on a switch they are left to the next one.
     fn cross_sections(
         &mut self,
         h: &R::Element,
+        switches: bool,
         observer: &mut Observer<'_, R>,
     ) -> Result<ControlFlow<()>, SimulateError> {
         let system = self.system;
         let offset = system.walls.len() + system.switches.len();
         let mut told = ControlFlow::Continue(());
         for (section, row) in system.sections.iter().enumerate() {
-            if system.switch_of(section).is_some() {
-                continue;
-            }
             // A section only looks on: where it is touched nothing happens.
             let _ = self.search(*row, offset + section, h, (usize::MAX, AtCluster::Pass));
             self.vanishing[offset + section] = 0;
+            let end = system.real.log2(&self.series.value(&system.real, *row, h));
+            if switches && end < self.rounding_errors() {
+                self.finder.found.pop();
+            }
             for index in 0..self.finder.found.len() {
                 let root = self.finder.found[index].clone();
                 if root.after == self.sides[section] {

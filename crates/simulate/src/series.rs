@@ -36,6 +36,9 @@ pub(crate) struct Series<R: Real> {
     scratch: R::Element,
 }
 
+/// log2 of zero, and of zero.
+const NOTHING: (f64, f64) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+
 impl<R: Real> Series<R> {
     pub(crate) fn new(system: &System<R>, order: usize) -> Self {
         let zero = system.real.zero();
@@ -272,7 +275,8 @@ impl<R: Real> Series<R> {
         Some((log, [own[0], own[1]]))
     }
 
-    /// Whether h |x'(h) - f(x(h))| is within the tolerance (relative to |x_0| + h |x_1|) or within
+    /// Whether h |x'(h) - f(x(h))|, and |w(h) - w(x(h))| for the nonlinear functions w of switches and sections, are
+    /// within the tolerance (relative to |x_0| + h |x_1|, of w to |w_0| + h |w_1| if that is more) or within
     /// rounding errors. It sees what the last coefficients do not tell: x'' = x^101 at x = 0 has
     /// none below order 103.
     pub(crate) fn holds(
@@ -298,7 +302,10 @@ impl<R: Real> Series<R> {
         let scale = place.max(speed + size);
         // The derivative's tail is p times that of the series.
         let factor = (self.order as f64).log2() + 3.0;
-        if worst + size <= log2_tolerance + factor + scale {
+        let surfaces = system.nonlinear.iter().map(|row| self.truncated(real, *row, h));
+        let (surface, extent) = surfaces.fold(NOTHING, |a, b| (a.0.max(b.0), a.1.max(b.1)));
+        let limit = log2_tolerance + factor;
+        if worst + size <= limit + scale && surface <= limit + scale.max(extent) {
             return true;
         }
         // Rounding errors of some hundred operations on the largest term are no defect either.
@@ -311,7 +318,15 @@ impl<R: Real> Series<R> {
             largest = terms.map(|term| real.log2(term)).fold(f64::NEG_INFINITY, f64::max);
         }
         let largest = largest.max(scale - size);
-        worst <= largest + 7.0 - f64::from(real.bits())
+        worst.max(surface) <= largest + 7.0 - f64::from(real.bits())
+    }
+
+    /// log2 of |w(h) - w(x(h))| and of the larger of |w_0| and h |w_1| for a row w of the probe.
+    fn truncated(&self, real: &R, row: usize, h: &R::Element) -> (f64, f64) {
+        let truncated = self.value(real, row, h);
+        let [first, slope] = [0, 1].map(|level| real.log2(self.rows.at(row, level)));
+        let defect = real.difference(&truncated, self.probe.rows.at(row, 0));
+        (real.log2(&defect), first.max(slope + real.log2(h)))
     }
 
     fn place(&mut self, system: &System<R>, end: &R::Element, phase: &Phase, h: &R::Element) {

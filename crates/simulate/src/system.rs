@@ -173,6 +173,10 @@ impl Model {
         for switch in &switches {
             needed.extend(switch.tangents.iter().flatten().copied().chain([switch.row]));
         }
+        let surfaces = switches.iter().map(|switch| switch.row).chain(sections.iter().copied());
+        let mut nonlinear: Vec<usize> = surfaces.filter(|row| !tape.is_linear(*row)).collect();
+        nonlinear.sort_unstable();
+        nonlinear.dedup();
         tape.restrict(&real, needed);
         let delays = delays.iter().map(|delay| real.float(delay)).collect();
         let history = self.compile_history(&real, parameters)?;
@@ -184,6 +188,7 @@ impl Model {
             walls,
             switches,
             sections,
+            nonlinear,
             delays,
             history,
         })
@@ -239,6 +244,8 @@ pub struct System<R: Real> {
     pub(crate) walls: Vec<Wall<R::Element>>,
     pub(crate) switches: Vec<Switch>,
     pub(crate) sections: Vec<usize>,
+    /// The rows of switches and sections that are no linear functions of states and time.
+    pub(crate) nonlinear: Vec<usize>,
     pub(crate) delays: Vec<R::Element>,
     pub(crate) history: Option<History<R::Element>>,
 }
@@ -254,12 +261,6 @@ impl<R: Real> System<R> {
     #[must_use]
     pub fn directions(&self) -> usize {
         self.tape.states / self.variables - 1
-    }
-
-    /// The switch whose argument is the function of a section.
-    pub(crate) fn switch_of(&self, section: usize) -> Option<usize> {
-        let row = self.sections[section];
-        self.switches.iter().position(|switch| switch.row == row && !switch.branch)
     }
 
     /// The number of switches: different arguments of signs and absolute values.

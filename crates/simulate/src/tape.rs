@@ -254,6 +254,15 @@ impl<E: Clone> Tape<E> {
         (0..needed.len()).filter(|index| needed[*index]).collect()
     }
 
+    /// Whether a row is a linear function of states and time.
+    pub(crate) fn is_linear(&self, row: usize) -> bool {
+        let linear = |index: usize| {
+            let op = &self.ops[index];
+            self.affine[index] || matches!(op, Op::Add(..) | Op::Subtract(..) | Op::Scale(..))
+        };
+        self.cone(vec![row]).into_iter().all(linear)
+    }
+
     /// Level `n` of operation `index`. Inlined, as all that it does, into what is compiled for wider vectors.
     #[inline(always)]
     pub(crate) fn operation<R: Arithmetic<Element = E>>(

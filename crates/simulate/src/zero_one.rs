@@ -65,6 +65,24 @@ pub fn zero_one(series: &[f64], tick: &Tick<'_>) -> Option<ZeroOne> {
     Some(ZeroOne { k: at(0.5), quartiles: (at(0.25), at(0.75)) })
 }
 
+/// Whether the series visits m bands in turn: the ranges of every m-th number, from each of the first m on, are
+/// disjoint. Cost: O(N).
+///
+/// ```
+/// let three: Vec<f64> = (0..300).map(|n| f64::from(n % 3) + 0.3 * f64::from(n).sin()).collect();
+/// assert!(lindstedt_simulate::is_in_bands(&three, 3) && !lindstedt_simulate::is_in_bands(&three, 2));
+/// ```
+#[must_use]
+pub fn is_in_bands(series: &[f64], m: usize) -> bool {
+    let range = |first: usize| {
+        let band = series.iter().skip(first).step_by(m);
+        band.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (x.min(low), x.max(high)))
+    };
+    let mut ranges: Vec<(f64, f64)> = (0..m).map(range).collect();
+    ranges.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ranges.windows(2).all(|pair| pair[0].1 < pair[1].0)
+}
+
 /// Lags at which the halves of a series are compared.
 const LAGS: usize = 8;
 /// By how many times 1/sqrt(N) they may differ: chaotic series of N points were found to stay below 8, but for

@@ -109,13 +109,14 @@ fn samples_and_sections() {
     }
     // A mass that sticks at its maxima, where x' is zero but for rounding errors: one point for each of them.
     // 1.3034292: an event code of piecewise linear motion.
-    for friction in ["sign(x')/2", "sign(2*x')/2", "-sign(-x'/3)/2"] {
-        let equation = format!("x'' + x + {friction} = cos(t/2)");
+    let signs = ["sign(x')", "sign(2*x')", "-sign(-x'/3)", "sign(-x'^3/3)*(-1)", "sign(x'+x'^3)"];
+    for friction in signs.iter().chain(&["sign(sin(x'))", "sign(x'*(1+x^2))"]) {
+        let equation = format!("x'' + x + {friction}/2 = cos(t/2)");
         let sticks = [&equation, "--state", "1,0", "--section", "velocity", "--skip", "12"];
-        for way in [&["--digits", "15"][..], &["--f64"]] {
+        for way in [&["--digits", "15"][..], &["--digits", "4"], &["--f64"]] {
             let found = json(&[&sticks[..], &["--periods", "20"], way].concat());
             let points = found["section"]["points"].as_array().unwrap();
-            let top = |point: &Value| (point[1].as_f64().unwrap() - 1.303_429_2).abs() < 1e-7;
+            let top = |point: &Value| (point[1].as_f64().unwrap() - 1.303_429_2).abs() < 1e-6;
             assert!(points.len() > 6 && points.iter().all(top), "{friction} {way:?}: {points:?}");
         }
     }
@@ -307,6 +308,12 @@ fn exponents_and_the_zero_one_test() {
     // Two bands: every second point looks chaotic.
     assert!(float(&chaotic["zero_one"]["k"][1]) > 0.95, "{}", chaotic["zero_one"]);
     assert!(chaotic["verdict"].as_str().unwrap().starts_with("chaotic"));
+    // Seven bands.
+    let bands = "x'' + 3/10*x' - x + x^3 = 42/100*cos(6/5*t)";
+    let bands = json(&[bands, "--zero-one", "--periods", "1000"]);
+    let tests = bands["zero_one"]["k"].as_array().unwrap();
+    assert!(tests.len() == 5 && tests[4]["every"] == 7 && float(&tests[4]) > 0.95, "{tests:?}");
+    assert!(tests.iter().take(4).all(|test| float(test) < 0.3), "{tests:?}");
     let regular = at("0.6", "500");
     assert!((float(&regular["lyapunov"]) + 0.0185).abs() < 1e-3);
     assert!(regular["verdict"].as_str().unwrap().starts_with("regular"));

@@ -9,7 +9,7 @@ use lindstedt_equation::Expression;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
     Doubles, LyapunovExponent, LyapunovSettings, PoincareMap, Section, Settings, SimulateError,
-    Surface, ZeroOne, is_stationary, largest_lyapunov_exponent, zero_one,
+    Surface, ZeroOne, is_in_bands, is_stationary, largest_lyapunov_exponent, zero_one,
 };
 use rug::Float;
 use serde::Serialize;
@@ -22,6 +22,9 @@ const LEAST: u32 = 100;
 const PHASE: f64 = 0.381_966;
 /// Every m-th point, m up to this: an attractor in m bands looks regular to the 0-1 test.
 const STRIDES: usize = 4;
+/// And up to this where the m bands are seen in x: other regular series, thinned more, may turn so slowly that they look
+/// chaotic.
+const BANDS: usize = 16;
 
 /// The question whether a motion is chaotic, by the exponent, the test, or both.
 ///
@@ -83,6 +86,9 @@ pub struct Test {
     pub quartiles: [f64; 2],
     #[serde(skip)]
     found: ZeroOne,
+    /// Whether the two halves of these points are alike.
+    #[serde(skip)]
+    stationary: bool,
 }
 
 /// The 0-1 tests.
@@ -298,13 +304,15 @@ impl Run<'_> {
             }
         }
         let mut k = Vec::new();
-        for every in 1..=STRIDES {
+        let tested = |m: &usize| *m <= STRIDES || is_in_bands(&series, *m);
+        for every in (1..=BANDS).filter(tested) {
             let thinned: Vec<f64> = series.iter().copied().step_by(every).collect();
             match zero_one(&thinned, &|| self.tick()) {
                 Some(found) => {
                     let (low, high) = found.quartiles;
                     let number = number(found.k, (high - low) / 2.0);
-                    k.push(Test { k: number, every, quartiles: [low, high], found });
+                    let stationary = stationary && is_stationary(&thinned);
+                    k.push(Test { k: number, every, quartiles: [low, high], found, stationary });
                 }
                 None if self.work.stop.asked() => return Err(stopped(SimulateError::Stopped)),
                 None => {}
@@ -315,7 +323,7 @@ impl Run<'_> {
             stationary,
             estimate: "median of K over 100 frequencies in doubles; error: half the distance of the \
                        quartiles; several bands look regular, so every 2nd, 3rd, 4th point is tested \
-                       too; five bands or more may look regular",
+                       too, and every m-th of m <= 16 bands that are apart in x",
             k,
         })
     }
@@ -325,8 +333,7 @@ impl Run<'_> {
         // The first test whose K is largest.
         let largest =
             test.and_then(|t| t.k.iter().rev().max_by(|a, b| a.found.k.total_cmp(&b.found.k)));
-        let stationary = test.is_none_or(|test| test.stationary);
-        let test = largest.map(|test| self.of_test(test, stationary));
+        let test = largest.map(|test| self.of_test(test));
         exponent.into_iter().chain(test).collect::<Vec<_>>().join("; ")
     }
 
@@ -357,10 +364,10 @@ impl Run<'_> {
         format!("{word}, largest Lyapunov exponent {decimal} +- {error}")
     }
 
-    fn of_test(&self, test: &Test, stationary: bool) -> String {
+    fn of_test(&self, test: &Test) -> String {
         let word = match test.found {
             _ if self.setup.linear => "says nothing of a linear equation, which is not chaotic",
-            ZeroOne { k, .. } if k >= 0.3 && !stationary => {
+            ZeroOne { k, .. } if k >= 0.3 && !test.stationary => {
                 "undecided, the two halves of the series differ (a transient? --skip leaves it out)"
             }
             // One wide distribution of K is no growth at all frequencies.
@@ -368,8 +375,12 @@ impl Run<'_> {
             ZeroOne { k, .. } if k < 0.3 => "regular",
             _ => "undecided",
         };
-        let every = ["", "", " at every 2nd point", " at every 3rd point", " at every 4th point"];
-        let every = every.get(test.every).copied().unwrap_or_default();
+        let every = match test.every {
+            1 => String::new(),
+            2 => " at every 2nd point".to_owned(),
+            3 => " at every 3rd point".to_owned(),
+            m => format!(" at every {m}th point"),
+        };
         format!("0-1 test {word}: K = {:.4}{every}", test.found.k)
     }
 }
