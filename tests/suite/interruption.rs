@@ -172,7 +172,7 @@ fn grids() {
 #[test]
 fn averaged_rates() {
     let problem = problems::vibro_impact::problem();
-    let run = |values: bool, stop| -> Result<Averaging, Error> {
+    let run = |values: bool, stop| -> Result<(Averaging, bool), Error> {
         let list = [
             ("alpha", "1"),
             ("omega", "13/5"),
@@ -186,11 +186,17 @@ fn averaged_rates() {
         let parameters = list.map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect();
         let settings =
             AveragingSettings { order: 8, parameters, stop, ..AveragingSettings::default() };
-        average(&problem, &settings, &mut |_| true)
+        let mut read = false;
+        let mut observer = |progress: Progress| {
+            read |= matches!(progress, Progress::Reading);
+            true
+        };
+        average(&problem, &settings, &mut observer).map(|found| (found, read))
     };
     for values in [true, false] {
         let (stop, asked) = after(u64::MAX);
-        let whole = run(values, stop).unwrap();
+        let (whole, read) = run(values, stop).unwrap();
+        assert!(!read);
         let total = asked.load(Ordering::SeqCst);
         // An order of a linear equation is a few products: it is asked at each, and within long ones.
         assert!(total > 8, "{total} questions");
@@ -198,10 +204,12 @@ fn averaged_rates() {
         for i in 0..30 {
             let (stop, _) = after(total * i / 30);
             let result = run(values, stop);
-            let Ok(found) = result else {
+            let Ok((found, read)) = result else {
                 assert!(interrupted(&result), "{:?}", result.err());
                 continue;
             };
+            // Limits do not end the reading of what is finished.
+            assert_eq!(read, found.checked_orders == 0);
             assert!(found.checked_orders == 0 || found.checked_orders == found.order);
             assert_eq!(found.amplitude_rate[..], whole.amplitude_rate[..=found.order]);
             assert_eq!(found.phase_rate[..], whole.phase_rate[..=found.order]);

@@ -65,8 +65,11 @@ impl<'a> Session<'a> {
 
     /// The means of a question.
     pub fn work(&self) -> Work {
-        let bar = self.bar.clone();
+        let (bar, watch) = (self.bar.clone(), self.watch.clone());
         let progress = move |progress: Progress| {
+            if matches!(progress, Progress::Reading) {
+                watch.showing();
+            }
             bar.set_message(progress.words());
             bar.tick();
         };

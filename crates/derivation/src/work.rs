@@ -29,6 +29,8 @@ pub enum Progress {
     Integrating(usize),
     /// The finished expansion is being substituted into the equation.
     Checking,
+    /// The work was stopped; what is finished is being read as formulas.
+    Reading,
     /// So many of so many independent parts are done.
     Parts(usize, usize),
     /// A try with so many digits.
@@ -44,6 +46,7 @@ impl Progress {
             Self::Primes(primes) => format!("{primes} primes done"),
             Self::Integrating(done) => format!("{done} values compared"),
             Self::Checking => "substituting into the equation".to_owned(),
+            Self::Reading => "reading what is finished".to_owned(),
             Self::Parts(done, all) => format!("{done} of {all} done"),
             Self::Digits(digits) => format!("{digits} digits"),
         }

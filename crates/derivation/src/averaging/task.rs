@@ -265,6 +265,9 @@ impl<'a> Task<'a> {
             Err(ExpandError::Interrupted { .. }) => 0,
             other => other?,
         };
+        if self.settings.stop.asked() {
+            observer(Progress::Reading);
+        }
         let expansion = AveragedExpansion::of(algebra, &found, read);
         Ok((expansion.ok_or(ExpandError::NotWeaklyNonlinear)?, checked_orders))
     }

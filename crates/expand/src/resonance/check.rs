@@ -45,10 +45,14 @@ pub fn checked_residual<A: AmplitudeAlgebra>(
     equation: &Equation<A>,
     found: &SlowFlow<A::Element>,
 ) -> Result<Vec<A::Element>, ExpandError> {
+    let interrupted = Err(ExpandError::Interrupted { order: found.order() });
+    if algebra.interrupted() {
+        return interrupted;
+    }
     let residual = substituted(algebra, equation, found);
     // What was multiplied after the work was stopped means nothing, for better or worse.
     if algebra.interrupted() {
-        return Err(ExpandError::Interrupted { order: found.order() });
+        return interrupted;
     }
     residual
 }
@@ -228,6 +232,9 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
     ) -> Result<Values<A>, ExpandError> {
         let mut values = Vec::new();
         for node in &equation.nodes {
+            if self.algebra.interrupted() {
+                return Err(ExpandError::Interrupted { order: self.order });
+            }
             let value = match known(node)? {
                 Some(value) => value,
                 None => polynomial_value(self.algebra, node, &values, self.order)
