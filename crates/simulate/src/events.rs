@@ -80,7 +80,7 @@ impl<R: Real> Integrator<'_, R> {
         for (index, wall) in system.walls.iter().enumerate() {
             let d = wall.direction;
             if self.phase.contact == Some(index) {
-                let force = leading(self.series.rows.row(system.right_sides[1]));
+                let force = leading(self.series.rows.row(system.force()));
                 if force == Some(-d) {
                     return hit(Surface::Contact(index), -d);
                 }
@@ -190,7 +190,7 @@ impl<R: Real> Integrator<'_, R> {
         let mut cluster: Option<(Surface, R::Element)> = None;
         let walls = system.walls.len();
         if let Some(wall) = self.phase.contact {
-            let row = system.right_sides[1];
+            let row = system.force();
             // The force itself starts anywhere, not on the surface.
             let skip = std::mem::replace(&mut self.vanishing[wall], 0);
             let outcome = self.search(row, wall, h, FIRST);
@@ -279,7 +279,7 @@ impl<R: Real> Integrator<'_, R> {
         self.before.extend_from_slice(&self.state);
         let kind = match hit.surface {
             Surface::Wall(wall) => self.impact(wall, hit)?,
-            Surface::Contact(wall) => self.depart(wall, hit)?,
+            Surface::Contact(wall) => self.depart(wall)?,
             Surface::Switch(switch) => self.switch(switch, hit)?,
             Surface::Limit(switch) => self.release(switch, hit)?,
             Surface::Section(section) => {
@@ -294,7 +294,8 @@ impl<R: Real> Integrator<'_, R> {
         {
             return Ok(ControlFlow::Continue(()));
         }
-        if matches!(kind, EventKind::Switching { .. }) && !self.system.sections.is_empty() {
+        let starts = matches!(kind, EventKind::Switching { .. } | EventKind::Departure { .. });
+        if starts && !self.system.sections.is_empty() {
             self.rounding = Some(self.rounding_errors());
         }
         Ok(self.tell(kind, f64::NEG_INFINITY, observer))

@@ -325,7 +325,7 @@ impl<'s, R: Real> Integrator<'s, R> {
         }
         self.stalled = 0;
         if self.rebound.is_some()
-            && let Some((duration, log2_error)) = self.accumulation(remaining)
+            && let Some((duration, log2_error)) = self.accumulation(remaining)?
         {
             return self.accumulate(&duration, log2_error, observer);
         }

@@ -19,8 +19,8 @@ pub(crate) struct Phase {
     pub(crate) contact: Option<usize>,
 }
 
-/// log2 of the longest step, and of the largest of x_0 and of x_1; nothing where a coefficient is not finite.
-type Length = Option<(f64, [f64; 2])>;
+/// log2 of the longest step, and of the largest of x_0, of x_1 and of x_2; nothing where a coefficient is not finite.
+type Length = Option<(f64, [f64; 3])>;
 
 /// Taylor coefficients and the places to compute them in.
 #[derive(Clone, Debug)]
@@ -30,8 +30,10 @@ pub(crate) struct Series<R: Real> {
     pub(crate) probe: Probe<R::Element>,
     /// Where it was placed.
     probed: Option<R::Element>,
-    /// log2 of the length of a step, and of the norms of x_0 and x_1, once asked for.
+    /// log2 of the length of a step, and of the norms of x_0, x_1 and x_2, once asked for.
     length: Option<Length>,
+    /// Whether the body rests at a wall.
+    rests: bool,
     sum: R::Element,
     scratch: R::Element,
 }
@@ -48,6 +50,7 @@ impl<R: Real> Series<R> {
             probe: Probe::new(system.tape.rows(), system.variables, &zero),
             probed: None,
             length: None,
+            rests: false,
             sum: zero.clone(),
             scratch: zero,
         }
@@ -66,6 +69,7 @@ impl<R: Real> Series<R> {
     ) -> Result<(), SimulateError> {
         let asks = levels >= LONG;
         (self.probed, self.length) = (None, None);
+        self.rests = phase.contact.is_some();
         let sliding = phase.modes.iter().position(|mode| *mode == 0);
         let mut sensitivity = None;
         for n in 0..=levels {
@@ -104,7 +108,7 @@ impl<R: Real> Series<R> {
         rows: &[usize],
         from: impl Fn(usize) -> I,
     ) {
-        (self.probed, self.length) = (None, None);
+        (self.probed, self.length, self.rests) = (None, None, false);
         for row in rows {
             self.rows.row_mut(*row).iter_mut().zip(from(*row)).for_each(|(to, x)| *to = x);
         }
@@ -249,8 +253,8 @@ impl<R: Real> Series<R> {
     }
 
     /// The longest step h with |x_m| h^m <= tolerance max_{k<3} |x_k| h^k for m = p - 1, p, in
-    /// the largest norm; the linearisation is measured by itself. Nothing if a coefficient is
-    /// not finite.
+    /// the largest norm; the linearisation is measured by itself. At rest at a wall x is constant, and the force that
+    /// will end it is in its place. Nothing if a coefficient is not finite.
     pub(crate) fn step(&mut self, system: &System<R>, log2_tolerance: f64) -> Option<f64> {
         let length = self.length.unwrap_or_else(|| self.longest(system, log2_tolerance));
         self.length = Some(length);
@@ -266,17 +270,18 @@ impl<R: Real> Series<R> {
             let last = |level| self.norm(&system.real, group.clone(), level);
             log2_step(self.order, log2_tolerance, first, last)
         };
-        let own = first(0..n);
-        let mut log = of(0..n, own)?;
+        let moving = if self.rests { system.force()..system.force() + 1 } else { 0..n };
+        let own = first(moving.clone());
+        let mut log = of(moving, own)?;
         let others = n..system.tape.states;
         if !others.is_empty() {
             log = log.min(of(others.clone(), first(others))?);
         }
-        Some((log, [own[0], own[1]]))
+        Some((log, own))
     }
 
-    /// Whether h |x'(h) - f(x(h))|, and |w(h) - w(x(h))| for the nonlinear functions w of switches and sections, are
-    /// within the tolerance (relative to |x_0| + h |x_1|, of w to |w_0| + h |w_1| if that is more) or within
+    /// Whether h |x'(h) - f(x(h))|, and |w(h) - w(x(h))| for the nonlinear functions w of switches and sections (at rest
+    /// at a wall of the force alone), are within the tolerance (relative to |x_0| + h |x_1|, of w to |w_0| + h |w_1| if that is more) or within
     /// rounding errors. It sees what the last coefficients do not tell: x'' = x^101 at x = 0 has
     /// none below order 103.
     pub(crate) fn holds(
@@ -287,22 +292,25 @@ impl<R: Real> Series<R> {
         h: &R::Element,
         log2_tolerance: f64,
     ) -> bool {
-        if phase.contact.is_some() {
-            return true;
-        }
         let real = &system.real;
         if self.probed.as_ref() != Some(h) {
             self.place(system, end, phase, h);
         }
-        let worst = real.log2_of_largest(self.probe.defects.iter());
-        let Some((_, [place, speed])) = self.length.flatten().filter(|_| !worst.is_nan()) else {
+        let worst = match self.rests {
+            true => f64::NEG_INFINITY,
+            false => real.log2_of_largest(self.probe.defects.iter()),
+        };
+        let Some((_, [place, speed, bend])) = self.length.flatten().filter(|_| !worst.is_nan())
+        else {
             return false;
         };
         let size = real.log2(h);
-        let scale = place.max(speed + size);
+        let scale = place.max(speed + size).max(bend + 2.0 * size);
         // The derivative's tail is p times that of the series.
         let factor = (self.order as f64).log2() + 3.0;
-        let surfaces = system.nonlinear.iter().map(|row| self.truncated(real, *row, h));
+        let force = [system.force()];
+        let surfaces = if self.rests { &force[..] } else { &system.nonlinear };
+        let surfaces = surfaces.iter().map(|row| self.truncated(real, *row, h));
         let (surface, extent) = surfaces.fold(NOTHING, |a, b| (a.0.max(b.0), a.1.max(b.1)));
         let limit = log2_tolerance + factor;
         if worst + size <= limit + scale && surface <= limit + scale.max(extent) {

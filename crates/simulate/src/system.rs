@@ -263,6 +263,11 @@ impl<R: Real> System<R> {
         self.tape.states / self.variables - 1
     }
 
+    /// The row of x'' where there are walls.
+    pub(crate) fn force(&self) -> usize {
+        self.right_sides.get(1).copied().unwrap_or(self.right_sides[0])
+    }
+
     /// The number of switches: different arguments of signs and absolute values.
     #[must_use]
     pub fn switches(&self) -> usize {

@@ -163,6 +163,56 @@ fn walls() {
     refuses(&[&path, "--set", "R=2"], 3, "restitution");
 }
 
+/// At rest at a wall until the force that the body would leave with points away: of time alone, a root; with dry
+/// friction that holds it, 1/2 = -cos t.
+#[test]
+fn rests_at_walls() {
+    let folder = Folder::new("rests");
+    let wall = |name: &str, equations: &str, restitution: &str, start: &str| {
+        let text = format!(
+            "{equations}\n[impact]\nposition = '0'\ncrossing = 'rising'\nrestitution = '{restitution}'\n\
+             [initial]\nx = '{start}'\nvelocity = '0'\n"
+        );
+        folder.file(name, &text)
+    };
+    let force = |t: f64| 0.96 + 0.5 * (4.7 * t + 0.75).cos() - 0.046 * t;
+    let (mut low, mut high) = (11.0, 11.2);
+    while high - low > 1e-13 {
+        let middle = (low + high) / 2.0;
+        if force(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    let slow = "equation = \"x'' = 0.96 + 0.5*cos(4.7*t + 0.75) - 0.046*t\"";
+    let held = "equation = \"x'' + sign(x')/2 = cos(t)\"";
+    for (name, equation, start, leaves) in [
+        ("slow.toml", slow, "-1/100", low),
+        ("held.toml", held, "-1/10", 2.0 * std::f64::consts::FRAC_PI_3),
+    ] {
+        let path = wall(name, equation, "0", start);
+        for way in [&["--digits", "12"][..], &["--digits", "30"], &["--f64"]] {
+            let found = simulate(&[&[&*path, "--until", "11.3"], way].concat());
+            let events = found["events"].as_array().unwrap();
+            let departure = events.iter().find(|e| e["kind"] == "departure").unwrap();
+            assert!((float(&departure["t"]) - leaves).abs() < 1e-10, "{name} {way:?} {departure}");
+            assert!(events.len() < 5, "{name} {way:?} {events:?}");
+        }
+    }
+    // Flights that end with sqrt(b/a) times their velocity, a = 5/4 on the way out and b = 3/4 on that back.
+    let path = wall("chatter.toml", "equation = \"x'' + sign(x')/4 = 1\"", "1/2", "-1");
+    let (a, b) = (1.25f64, 0.75f64);
+    let leaves = 0.5 * (2.0 * b).sqrt();
+    let ends =
+        (2.0 / b).sqrt() + leaves * (1.0 / a + 1.0 / (a * b).sqrt()) / (1.0 - 0.5 * (b / a).sqrt());
+    for way in [&["--digits", "12"][..], &["--digits", "30"], &["--f64"]] {
+        let found = simulate(&[&[&*path, "--until", "6"], way].concat());
+        let events = found["events"].as_array().unwrap();
+        let end = events.iter().find(|e| e["kind"] == "accumulation").unwrap();
+        assert!((float(&end["t"]) - ends).abs() < 1e-11, "{way:?} {end} {ends}");
+        assert_eq!(float(&found["final"]["v"]), 0.0, "{way:?}");
+    }
+    let two = wall("two.toml", "equations = [\"x'' + x + y/10 = 0\", \"y'' + y = 0\"]", "1", "0");
+    refuses(&[&two, "--state=-1,0,0,0"], 3, "a wall is for one unknown");
+}
+
 /// An equation without a small parameter moves as it is: x'^2/2 - cos x = -cos 2. Expansions say what they
 /// miss.
 #[test]

@@ -170,10 +170,11 @@ pub(super) fn is_linear(equation: &Expression) -> bool {
     })
 }
 
-/// The argument of a sign or absolute value that has the velocity in it: dry friction.
+/// The argument of a sign or absolute value that has a velocity in it: dry friction.
 pub(super) fn friction(equation: &Expression) -> Option<&Expression> {
+    let moves = |e: &Expression| matches!(e, Expression::Unknown(x) if x.derivative == 1);
     let is_friction = |e: &Expression| match e {
-        Expression::Function(Abs | Sign, argument) => argument.contains(&Expression::VELOCITY),
+        Expression::Function(Abs | Sign, argument) => argument.find(&moves).is_some(),
         _ => false,
     };
     match equation.find(&is_friction)? {

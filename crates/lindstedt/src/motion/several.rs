@@ -1,7 +1,7 @@
 //! Several unknowns in the time domain: no walls, no delays, a start of all of them.
 
 use super::Start;
-use super::equation::{meaning, values, with_small};
+use super::equation::{friction, meaning, values, with_small};
 use super::force::frequency;
 use super::history::Evaluator;
 use super::setup::Setup;
@@ -32,6 +32,11 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
     if delayed || start.history.is_some() || start.perturbation.is_some() {
         let message = "several unknowns are integrated from a state, without a delay";
         let hint = "`lindstedt derive` averages a delay of order eps: eps*x(t - T)";
+        return Err(Refused::no_answer("several-unknowns", message, hint).into());
+    }
+    if problem.impact.is_some() {
+        let message = "a wall is for one unknown";
+        let hint = "a file without [impact]; or one equation";
         return Err(Refused::no_answer("several-unknowns", message, hint).into());
     }
     let small = problem.small.to_string();
@@ -68,7 +73,7 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
             start: [x, v],
             others,
             forcing: period.flatten().map(Quantity::Float),
-            sticks: false,
+            sticks: equations.iter().any(|e| friction(e).is_some()),
         },
         small,
     })
