@@ -29,9 +29,6 @@ impl<S: Scalars> Binding<Amplitudes<S>> for Nothing {
     fn parameter(&self, _: &str) -> Option<AmplitudeElement<S::Element>> {
         None
     }
-    fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
-        None
-    }
 }
 
 /// The checked flow of an equation without parameters.
@@ -204,9 +201,6 @@ fn symbolic_rates_of_the_delay_loop() {
     impl Binding<Algebra> for Named<'_> {
         fn parameter(&self, name: &str) -> Option<Element> {
             Some(self.1.number(&self.0.parameter(self.0.position(name)?)))
-        }
-        fn formal(&self, _: &str, _: usize) -> Option<Element> {
-            None
         }
     }
     let named = Named(&k, &algebra);

@@ -124,9 +124,6 @@ impl Binding<Amplitudes<Integers>> for Seeking<'_> {
         let (other, sin) = if sine { (wave, sin) } else { (other, -sin) };
         Some(algebra.add(&algebra.scale(&own, &cos), &algebra.scale(&other, &sin)))
     }
-    fn formal(&self, name: &str, n: usize) -> Option<Element> {
-        self.0.formal(name, n)
-    }
     fn is_sought(&self, name: &str) -> bool {
         name == self.1
     }

@@ -154,9 +154,6 @@ mod tests {
         fn parameter(&self, _: &str) -> Option<Rational> {
             None
         }
-        fn formal(&self, _: &str, _: usize) -> Option<Rational> {
-            None
-        }
     }
 
     /// Two cycles: denominators and norms of x_n, x_n' and x_n'', with the amplitude that the order
