@@ -96,6 +96,15 @@ impl Expression {
         }
     }
 
+    /// The factors of a product, or the expression itself as the only one.
+    #[must_use]
+    pub fn factors(&self) -> &[Self] {
+        match self {
+            Self::Product(factors) => factors,
+            single => std::slice::from_ref(single),
+        }
+    }
+
     /// x'' + ... = 0 for an equation c x'' + ... = 0 with a constant c other than zero; an
     /// equation in which x'' stands alone is returned unchanged. A factor c with parameters
     /// becomes c^(-1) on every other term.

@@ -63,13 +63,9 @@ pub(super) fn is_wave(e: &Expression) -> bool {
 /// l and m of cos(m eta_l) or sin(m eta_l).
 pub(super) fn harmonic(wave: &Expression) -> Option<(Function, usize, i32)> {
     let Expression::Function(function, angle) = wave else { return None };
-    let (factors, one) = match &**angle {
-        Expression::Product(factors) => (&factors[..], Rational::from(1)),
-        single => (std::slice::from_ref(single), Rational::from(1)),
-    };
     let number = |m, e: &Expression| m * e.as_number().unwrap_or_else(|| 1.into());
-    let m = factors.iter().fold(one, number);
-    let phase = factors.iter().find_map(|e| match e {
+    let m = angle.factors().iter().fold(Rational::from(1), number);
+    let phase = angle.factors().iter().find_map(|e| match e {
         Expression::Parameter(name) => name.strip_prefix(PHASE)?.parse().ok(),
         _ => None,
     })?;
