@@ -143,9 +143,7 @@ fn duffing_to_order_20_is_the_fundamental_normalisation() {
 fn delay_loop() -> Problem {
     let mut problem = problems::vibro_impact::problem();
     let Expression::Sum(terms) = &problem.equation else { panic!("a sum") };
-    let free = |term: &&Expression| {
-        !term.print("eps", lindstedt::unstable::equation::print::Style::Text).contains("P0")
-    };
+    let free = |term: &&Expression| !term.print("eps", Style::Text).contains("P0");
     problem.equation = Expression::Sum(terms.iter().filter(free).cloned().collect());
     problem.synchronous = None;
     let card = ParameterCard { name: "T".into(), meaning: "".into(), default: "1".into() };

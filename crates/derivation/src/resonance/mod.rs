@@ -389,10 +389,7 @@ fn sum_of_harmonics(harmonic: &[i32], forces: usize) -> String {
         factors: vec![name(j)],
     };
     let terms = harmonic.iter().enumerate().filter(|(_, k)| **k != 0).map(term);
-    lindstedt_coeff::print::print_sum(
-        &terms.collect::<Vec<_>>(),
-        lindstedt_coeff::print::Style::Text,
-    )
+    lindstedt_coeff::print::print_sum(&terms.collect::<Vec<_>>(), Style::Text)
 }
 
 /// The names of the user.

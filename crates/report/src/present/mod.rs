@@ -26,7 +26,7 @@ use crate::format::steers;
 use crate::{Document, Figure, Formula, Table, Text};
 use classification::classification;
 use lindstedt::unstable::coeff::print::Style;
-use lindstedt::unstable::equation::{Condition, Problem, print};
+use lindstedt::unstable::equation::{Condition, Problem};
 use lindstedt::{Header, Number, Status};
 use serde::Serialize;
 use std::cell::Cell;
@@ -165,7 +165,7 @@ fn both(print: impl Fn(Style) -> String) -> Formula {
 
 /// The equation of a problem.
 fn equation(problem: &Problem) -> Formula {
-    Formula::new(problem.print(print::Style::Text), problem.print(print::Style::Latex))
+    both(|style| problem.print(style))
 }
 
 /// A condition in words.
