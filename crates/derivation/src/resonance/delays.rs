@@ -8,7 +8,7 @@
 //! coefficients that grow like 2^k with alternating signs. Where theta is a number of quarters of a turn they are numbers.
 
 use super::forces::{Angles as Named, named, quarters, wave_names};
-use super::{System, Terms, Unit};
+use super::{System, Terms, Unit, collected};
 use crate::averaging::constant;
 use lindstedt_algebra::Ring;
 use lindstedt_equation::Expression;
@@ -258,8 +258,7 @@ impl Angles {
                 }
             }
         }
-        let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
-        *terms = kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect();
+        *terms = collected(sum);
     }
 }
 
