@@ -4,10 +4,10 @@
 
 use super::unit::Unit;
 use super::{Names, ResonanceError};
+use lindstedt_algebra::common_measure;
 use lindstedt_equation::monomials::{Monomial, expand};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
-use lindstedt_number::common_measure;
 use rug::{Integer, Rational};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
