@@ -5,7 +5,7 @@ use crate::factors::{Factors, factors, is_wave};
 use crate::in_pi::InPi;
 use crate::refusal::Why;
 use lindstedt_algebra::common_measure;
-use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::monomials::{self, Monomial, Monomials};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_melnikov::{Forcing, Harmonic};
 use lindstedt_number::Exact;
@@ -76,18 +76,9 @@ pub(crate) fn harmonic_atom<'a>(
 /// (terms in t, terms without) of the argument of a sine or cosine of omega t + phase.
 fn angle(e: &Expression) -> Option<(Monomials, Monomials)> {
     let Expression::Function(Function::Sin | Function::Cos, argument) = e else { return None };
-    let all = expand(argument)?;
-    let (mut frequency, mut phase) = (Monomials::default(), Monomials::default());
-    for (m, q) in all.terms {
-        (m.order == 0 && m.x == 0 && m.velocity == 0).then_some(())?;
-        let part = match m.atoms.iter().next() {
-            None => &mut phase,
-            Some((key, 1)) if key == "t" && m.atoms.len() == 1 => &mut frequency,
-            Some(_) => return None,
-        };
-        part.terms.insert(m, q);
-    }
-    (!frequency.terms.is_empty()).then_some((frequency, phase))
+    let (rate, start) = monomials::angle(argument)?;
+    let strong = rate.terms.keys().chain(start.terms.keys()).all(|m| m.order == 0);
+    strong.then_some((rate, start))
 }
 
 fn sum(part: &Monomials) -> Option<InPi> {

@@ -5,7 +5,7 @@
 use super::unit::Unit;
 use super::{Names, ResonanceError};
 use lindstedt_algebra::common_measure;
-use lindstedt_equation::monomials::{Monomial, expand};
+use lindstedt_equation::monomials::{self, expand};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::{Integer, Rational};
@@ -85,15 +85,14 @@ pub(super) fn with_phases(
 
 /// The parts of an angle rate * t + start; nothing for an angle of another form.
 fn parts(angle: &Expression) -> Option<Angle> {
-    let all = expand(angle)?;
-    let still = |m: &Monomial| m.x == 0 && m.velocity == 0;
-    let in_time = |m: &Monomial| still(m) && m.atoms.len() == 1 && m.atoms.get("t") == Some(&1);
-    let at_start = |m: &Monomial| still(m) && m.atoms.is_empty() && m.order == 0;
-    let highest = all.terms.keys().filter(|m| in_time(m)).map(|m| m.order).max()?;
-    let order = |n| all.coefficient(|m| m.order == n && in_time(m));
-    let known = all.terms.keys().all(|m| in_time(m) || at_start(m));
-    let start = all.coefficient(at_start);
-    known.then(|| Angle { rate: (0..=highest).map(order).collect(), start })
+    let (rate, start) = monomials::angle(angle)?;
+    let highest = rate.terms.keys().map(|m| m.order).max()?;
+    let order = |n| rate.coefficient(|m| m.order == n);
+    let known = start.terms.keys().all(|m| m.order == 0);
+    known.then(|| Angle {
+        rate: (0..=highest).map(order).collect(),
+        start: start.coefficient(|_| true),
+    })
 }
 
 /// The rates at order zero of all angles: what must have a value.
