@@ -6,7 +6,7 @@ use rug::{Float, Rational};
 
 /// The arithmetic-geometric mean of two positive numbers; the mean lies between the iterates.
 /// O(log p) square roots after O(log |log a/b|) first ones.
-pub(crate) fn agm(balls: Balls, a: &Ball, b: &Ball) -> Option<Ball> {
+pub fn agm(balls: Balls, a: &Ball, b: &Ball) -> Option<Ball> {
     let (mut a, mut b) = (a.clone(), b.clone());
     for _ in 0..200 {
         if !a.is_positive() || !b.is_positive() {
