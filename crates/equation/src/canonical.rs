@@ -1,5 +1,5 @@
 //! One form for trees that addition and multiplication make equal, and the tree algebra that
-//! loading a problem needs: substitution, searching, x'' set free.
+//! loading a problem needs: searching, x'' set free.
 
 use crate::{Expression, Function};
 use rug::Rational;
