@@ -29,9 +29,6 @@ impl<S: Scalars> Binding<Amplitudes<S>> for Nothing {
     fn parameter(&self, _: &str) -> Option<AmplitudeElement<S::Element>> {
         None
     }
-    fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
-        None
-    }
 }
 
 /// The checked flow of an equation without parameters.
@@ -146,9 +143,7 @@ fn duffing_to_order_20_is_the_fundamental_normalisation() {
 fn delay_loop() -> Problem {
     let mut problem = problems::vibro_impact::problem();
     let Expression::Sum(terms) = &problem.equation else { panic!("a sum") };
-    let free = |term: &&Expression| {
-        !term.print("eps", lindstedt::unstable::equation::print::Style::Text).contains("P0")
-    };
+    let free = |term: &&Expression| !term.print("eps", Style::Text).contains("P0");
     problem.equation = Expression::Sum(terms.iter().filter(free).cloned().collect());
     problem.synchronous = None;
     let card = ParameterCard { name: "T".into(), meaning: "".into(), default: "1".into() };
@@ -204,9 +199,6 @@ fn symbolic_rates_of_the_delay_loop() {
     impl Binding<Algebra> for Named<'_> {
         fn parameter(&self, name: &str) -> Option<Element> {
             Some(self.1.number(&self.0.parameter(self.0.position(name)?)))
-        }
-        fn formal(&self, _: &str, _: usize) -> Option<Element> {
-            None
         }
     }
     let named = Named(&k, &algebra);

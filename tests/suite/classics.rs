@@ -69,9 +69,6 @@ impl Binding<Rationals> for NoNames {
     fn parameter(&self, _: &str) -> Option<Rational> {
         None
     }
-    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
-        None
-    }
 }
 
 type Plain = Trigonometric<Rationals>;

@@ -22,9 +22,6 @@ impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
     fn parameter(&self, name: &str) -> Option<AmplitudeElement<S::Element>> {
         self.0.symbol(name)
     }
-    fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
-        None
-    }
 }
 
 const SYMBOLS: [&str; 6] = ["s", "mu", "al", "F", "h", "be"];

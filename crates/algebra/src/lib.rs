@@ -8,6 +8,7 @@
 mod amplitudes;
 mod clock;
 pub mod laws;
+mod measure;
 mod phase;
 mod ring;
 mod stop;
@@ -15,6 +16,7 @@ mod stopping;
 
 pub use amplitudes::{AmplitudeAlgebra, LinearPart, LinearParts, Split};
 pub use clock::{ClockAlgebra, StillAndClock};
+pub use measure::common_measure;
 pub use phase::{
     Elementary, ForcedAlgebra, FunctionAlgebra, NEAR_MISS, PhaseAlgebra, PhaseError, Resolution,
     combination,

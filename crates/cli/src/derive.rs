@@ -2,11 +2,11 @@
 
 use crate::Outcome;
 use crate::arguments::{Precision, one_of};
-use crate::failure::{Failure, NO_ANSWER};
+use crate::failure::Failure;
 use crate::session::Session;
 use clap::{Args, ValueEnum};
 use lindstedt::choices::{NORMALISATIONS, Numbers, ROUTES, TIERS};
-use lindstedt::{Answer, Condition, Derive, Error, Route};
+use lindstedt::{Answer, Condition, Derive, Error, Refused, Route};
 
 #[derive(Debug, Args)]
 pub struct DeriveOptions {
@@ -100,12 +100,7 @@ fn as_asked<T>(
     if options.tier == Some(Numbers::Exact) && answer.header.tier != "exact" {
         let message = "coefficients are irrational: they are enclosed, not exact";
         let hint = "without --tier exact all their digits are certain";
-        return Err(Failure {
-            exit: NO_ANSWER,
-            code: "no-rational-modes",
-            message: message.to_owned(),
-            hint: hint.to_owned(),
-        });
+        return Err(Refused::no_answer("no-rational-modes", message, hint).into());
     }
     Ok(answer)
 }

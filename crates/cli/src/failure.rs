@@ -3,7 +3,7 @@
 use crate::arguments::Format;
 use crate::terminal::warn;
 use lindstedt::unstable::simulate::SimulateError;
-use lindstedt::{Error, Kind, NumberError, Refusal, Refused, general_hint};
+use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
 use lindstedt_report::json_line;
 use serde_json::json;
 use std::io::Write;
@@ -20,54 +20,46 @@ pub const FILE: u8 = 5;
 /// Stopped: what did it has the last word ([`crate::session::Session::failed`]).
 pub const STOPPED: u8 = 130;
 
-/// Why a command failed.
+/// Why a command failed: a refusal, and what the program ends with.
 #[derive(Debug)]
 pub struct Failure {
     /// The exit code.
     pub exit: u8,
-    /// A short name for programs.
-    pub code: &'static str,
-    /// One line for people.
-    pub message: String,
-    /// What to do about it.
-    pub hint: String,
+    /// The reason.
+    pub refused: Refused,
 }
 
 impl Failure {
     pub fn usage(code: &'static str, message: String, hint: &str) -> Self {
-        Self { exit: USAGE, code, message, hint: hint.to_owned() }
+        Refused::usage(code, message, hint).into()
+    }
+
+    /// File trouble.
+    pub fn file(message: String, hint: &str) -> Self {
+        Self { exit: FILE, refused: Refused::usage("file", message, hint) }
+    }
+
+    /// There is nothing to draw.
+    pub fn figure(message: impl ToString) -> Self {
+        Refused::no_answer("figure", message.to_string(), "").into()
     }
 
     /// A refusal of the library.
     pub fn of(refusal: &dyn Refusal) -> Self {
-        Self {
-            exit: exit_code(refusal.kind()),
-            code: refusal.code(),
-            message: refusal.to_string(),
-            hint: refusal.hint(),
-        }
-    }
-
-    /// What to do about it, in general where nothing is known in particular.
-    fn hint(&self) -> &str {
-        let kind = match self.exit {
-            USAGE | FILE => Kind::Usage,
-            NO_ANSWER => Kind::NoAnswer,
-            STOPPED => Kind::Stopped,
-            _ => Kind::Undecided,
-        };
-        if self.hint.is_empty() { general_hint(kind, self.code) } else { &self.hint }
+        let mut refused = Refused::usage(refusal.code(), refusal.to_string(), refusal.hint());
+        refused.kind = refusal.kind();
+        refused.into()
     }
 
     /// Prints the failure; in JSON mode on standard output, where a program reads.
     pub fn report(&self, format: Format) -> ExitCode {
-        let hint = self.hint();
+        let Refused { code, message, .. } = &self.refused;
+        let hint = self.refused.hint();
         if format == Format::Json {
-            let error =
-                json!({"error": {"code": self.code, "message": self.message, "hint": hint}});
+            let error = json!({"error": {"code": code, "message": message, "hint": hint}});
             let _ = write!(std::io::stdout(), "{}", json_line(&error).unwrap_or_default());
         } else {
-            warn(&format!("{} ({hint})", self.message));
+            warn(&format!("{message} ({hint})"));
         }
         ExitCode::from(self.exit)
     }
@@ -93,22 +85,13 @@ impl From<SimulateError> for Failure {
 
 impl From<Refused> for Failure {
     fn from(refused: Refused) -> Self {
-        Self {
-            exit: exit_code(refused.kind),
-            code: refused.code,
-            message: refused.message,
-            hint: refused.hint,
-        }
-    }
-}
-
-/// The exit code of a refusal.
-fn exit_code(kind: Kind) -> u8 {
-    match kind {
-        Kind::Usage => USAGE,
-        Kind::NoAnswer => NO_ANSWER,
-        Kind::Undecided => UNDECIDED,
-        Kind::Stopped => STOPPED,
+        let exit = match refused.kind {
+            Kind::Usage => USAGE,
+            Kind::NoAnswer => NO_ANSWER,
+            Kind::Undecided => UNDECIDED,
+            Kind::Stopped => STOPPED,
+        };
+        Self { exit, refused }
     }
 }
 

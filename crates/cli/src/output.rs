@@ -1,6 +1,6 @@
 //! Writing results: every file appears whole under its name, or what was there stays.
 
-use crate::failure::{FILE, Failure};
+use crate::failure::Failure;
 use same_file::is_same_file;
 use std::fs::{File, OpenOptions, Permissions, metadata};
 use std::io::{BufWriter, Error, ErrorKind, IntoInnerError, Result, Write};
@@ -184,10 +184,5 @@ pub fn open_to_append(path: &Path) -> Result<File> {
 
 /// A failure of the file system.
 pub fn trouble(what: &str, error: &Error) -> Failure {
-    Failure {
-        exit: FILE,
-        code: "file",
-        message: format!("cannot write {what}: {error}"),
-        hint: String::new(),
-    }
+    Failure::file(format!("cannot write {what}: {error}"), "")
 }

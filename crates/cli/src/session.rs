@@ -1,14 +1,14 @@
 //! What all commands share: format, output, progress, what ends them.
 
 use crate::arguments::{Common, Format, Precision};
-use crate::failure::{FILE, Failure, NO_ANSWER, STOPPED, UNDECIDED};
+use crate::failure::{Failure, NO_ANSWER, STOPPED, UNDECIDED};
 use crate::terminal::warn;
 use crate::watch::{Limits, Watch};
 use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::unstable::equation::Condition;
 use lindstedt::unstable::problem_file::{FileError, LARGEST_FILE, canonical_name};
-use lindstedt::{Answer, Error, Oscillator, Progress, Remark, Standing, Work};
+use lindstedt::{Answer, Error, Oscillator, Progress, Refused, Remark, Standing, Work};
 use lindstedt_report::{FigureError, Format as Written, Present};
 use serde::Serialize;
 use std::io::Read;
@@ -238,12 +238,8 @@ impl<'a> Session<'a> {
 
     fn written<A: Serialize + Present>(&self, answer: &A) -> Result<String, Failure> {
         Ok(match self.format() {
-            Format::Json => lindstedt_report::json(answer).map_err(|error| Failure {
-                exit: UNDECIDED,
-                code: "undecided",
-                message: error.to_string(),
-                hint: String::new(),
-            })?,
+            Format::Json => lindstedt_report::json(answer)
+                .map_err(|error| Refused::undecided("undecided", error.to_string(), ""))?,
             Format::Text => Written::Text.write(&answer.plain_document()),
             Format::Latex => Written::Latex.write(&answer.document()),
             Format::Markdown => Written::Markdown.write(&answer.document()),
@@ -251,13 +247,18 @@ impl<'a> Session<'a> {
     }
 
     /// A failure of this run: of stopped work with what stopped it.
-    pub fn failed(&self, failure: Failure) -> Failure {
+    pub fn failed(&self, mut failure: Failure) -> Failure {
         self.done();
-        let why = self.watch.reason().filter(|_| failure.exit == STOPPED);
-        let Some(why) = why else { return failure };
-        let hint = why.hint.map_or(failure.hint, str::to_owned);
-        let message = format!("{}: {}", why.words, failure.message);
-        Failure { exit: why.exit, code: why.code, message, hint }
+        if let Some(why) = self.watch.reason().filter(|_| failure.exit == STOPPED) {
+            let refused = &mut failure.refused;
+            refused.message = format!("{}: {}", why.words, refused.message);
+            refused.code = why.code;
+            if let Some(hint) = why.hint {
+                refused.hint = hint.to_owned();
+            }
+            failure.exit = why.exit;
+        }
+        failure
     }
 
     /// How many steps there are: from now on the bar shows what part is done.
@@ -293,15 +294,13 @@ fn drawn<T>(answer: &Answer<T>) -> Result<Option<String>, Failure>
 where
     Answer<T>: Present,
 {
-    let undrawn =
-        |message: String| Failure { exit: NO_ANSWER, code: "figure", message, hint: String::new() };
     match answer.figure().map(|figure| figure.svg()) {
         None => Ok(None),
         // What there would be to draw was not reached.
         Some(Err(FigureError::Empty)) if matches!(answer.standing, Standing::Stopped { .. }) => {
             Ok(None)
         }
-        Some(figure) => figure.map(Some).map_err(|error| undrawn(error.to_string())),
+        Some(figure) => figure.map(Some).map_err(Failure::figure),
     }
 }
 
@@ -321,12 +320,10 @@ fn digits(precision: &Precision) -> Result<usize, Failure> {
     }
     match precision.digits {
         0 => Err(Failure::usage("digits", "at least one digit is needed".into(), "--digits 30")),
-        d if d > MOST_DIGITS => Err(Failure {
-            exit: UNDECIDED,
-            code: "digits",
-            message: format!("{d} digits are more than the limit of {MOST_DIGITS}"),
-            hint: "ask for fewer digits".into(),
-        }),
+        d if d > MOST_DIGITS => {
+            let message = format!("{d} digits are more than the limit of {MOST_DIGITS}");
+            Err(Refused::undecided("digits", message, "ask for fewer digits").into())
+        }
         d => usize::try_from(d)
             .map_err(|_| Failure::usage("digits", "too many digits".into(), "--digits 30")),
     }
@@ -353,9 +350,11 @@ fn with_value(oscillator: Oscillator, item: &str) -> Result<Oscillator, Failure>
 
 /// An error of a problem file with its path, line and column.
 fn at_place(path: &str, error: Error) -> Failure {
-    let failure = Failure::of(&error);
-    let Error::File(FileError { kind, line, column }) = &error else { return failure };
-    Failure { message: format!("{}:{line}:{column}: {kind}", shown(path)), ..failure }
+    let mut failure = Failure::of(&error);
+    if let Error::File(FileError { kind, line, column }) = &error {
+        failure.refused.message = format!("{}:{line}:{column}: {kind}", shown(path));
+    }
+    failure
 }
 
 /// A path, whole: paths are as long as file systems allow, far more is an argument that is none.
@@ -366,18 +365,13 @@ fn shown(name: &str) -> String {
 /// The text of a file, if it is a file of a reasonable size: devices, pipes and what is too large
 /// are refused before anything is read.
 fn read(path: &str) -> Result<String, Failure> {
-    let failure = |what: String, hint: &str| Failure {
-        exit: FILE,
-        code: "file",
-        message: format!("cannot read {}: {what}", shown(path)),
-        hint: hint.into(),
-    };
-    let trouble = |error: std::io::Error| failure(error.to_string(), "");
+    let failure = |what| Failure::file(format!("cannot read {}: {what}", shown(path)), "");
+    let trouble = |error: std::io::Error| failure(error.to_string());
     let metadata = std::fs::metadata(path).map_err(trouble)?;
     if !metadata.is_file() {
-        return Err(failure("it is not a file".into(), ""));
+        return Err(failure("it is not a file".into()));
     }
-    let too_large = || failure(format!("it has more than {LARGEST_FILE} bytes"), "");
+    let too_large = || failure(format!("it has more than {LARGEST_FILE} bytes"));
     if metadata.len() > LARGEST_FILE {
         return Err(too_large());
     }
@@ -387,5 +381,5 @@ fn read(path: &str) -> Result<String, Failure> {
     if bytes.len() as u64 > LARGEST_FILE {
         return Err(too_large());
     }
-    String::from_utf8(bytes).map_err(|_| failure("it is not UTF-8 text".into(), ""))
+    String::from_utf8(bytes).map_err(|_| failure("it is not UTF-8 text".into()))
 }

@@ -5,6 +5,7 @@ use crate::arguments::Format;
 use crate::failure::{Failure, UNDECIDED};
 use crate::terminal::warn;
 use indicatif::ProgressBar;
+use lindstedt::Refused;
 use lindstedt::unstable::algebra::Stop;
 use signal_hook::consts::signal as signals;
 use std::process::exit;
@@ -260,9 +261,9 @@ impl Watch {
     fn end(&self, why: &Reason) {
         self.0.bar.finish_and_clear();
         let message = format!("{} within a step that cannot be broken off", why.words);
-        let hint = why.hint.unwrap_or("raise --limit-seconds, or ask for less").to_owned();
-        let failure = Failure { exit: why.exit, code: why.code, message, hint };
-        failure.report(self.0.format);
+        let hint = why.hint.unwrap_or("raise --limit-seconds, or ask for less");
+        let refused = Refused::undecided(why.code, message, hint);
+        Failure { exit: why.exit, refused }.report(self.0.format);
         exit(i32::from(why.exit));
     }
 

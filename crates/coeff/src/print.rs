@@ -20,21 +20,13 @@
 use crate::polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};
 use crate::sparse::sort_by_rank;
 use lindstedt_algebra::{Rationals, Ring};
+pub use lindstedt_equation::print::{Style, latex_name, parenthesize, print_rational};
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::digits::decimal;
 use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 use std::cmp::{Ordering, Reverse};
 use std::fmt::Write;
-
-/// How to write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
-    /// One line of ASCII, `3/8*mu_1^2`.
-    Text,
-    /// Mathematics for LaTeX, `\frac{3}{8}\,\mu_1^{2}`.
-    Latex,
-}
 
 /// One term of a printed sum: a rational number times factors that are already written.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,16 +111,6 @@ pub fn print_sum(terms: &[Term], style: Style) -> String {
         term.write_magnitude(style, &mut line);
     }
     if line.is_empty() { "0".to_owned() } else { line }
-}
-
-/// A sum in parentheses, growing ones around fractions in LaTeX.
-#[must_use]
-pub fn parenthesize(sum: &str, style: Style) -> String {
-    if style == Style::Latex && sum.contains(r"\frac") {
-        format!(r"\left({sum}\right)")
-    } else {
-        format!("({sum})")
-    }
 }
 
 /// A ring whose elements can be printed; the phase algebras print over any of them.
@@ -343,62 +325,6 @@ fn write_magnitude(q: &Rational, style: Style, line: &mut String) {
         Style::Text => write!(line, "{n}/{d}"),
         Style::Latex => write!(line, r"\frac{{{n}}}{{{d}}}"),
     };
-}
-
-/// `-3/8`, in LaTeX `-\frac{3}{8}`; integers without denominator.
-#[must_use]
-pub fn print_rational(q: &Rational, style: Style) -> String {
-    if style == Style::Text || q.is_integer() {
-        return q.to_string();
-    }
-    let sign = if q.cmp0() == Ordering::Less { "-" } else { "" };
-    let numerator = q.numer().clone().abs();
-    format!(r"{sign}\frac{{{numerator}}}{{{}}}", q.denom())
-}
-
-/// Names that are Greek letters; `eps` and `epsilon` are \varepsilon.
-const GREEK: &str = " alpha beta gamma delta zeta eta theta iota kappa lambda mu nu xi pi rho \
-    sigma tau upsilon phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ";
-
-/// A name of ASCII letters in LaTeX: `mu_1` and `mu1` are `\mu_1`, `R_in` is `R_{\mathrm{in}}`, `ln(a)` is
-/// `\ln a`. Anything that is no name is left as it is.
-#[must_use]
-pub fn latex_name(name: &str) -> String {
-    if let Some(argument) = name.strip_prefix("ln(").and_then(|rest| rest.strip_suffix(')')) {
-        let simple = argument.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        let argument = latex_name(argument);
-        let space = if argument.starts_with('\\') { "" } else { " " };
-        return if simple { format!(r"\ln{space}{argument}") } else { format!(r"\ln({argument})") };
-    }
-    if let Some(number) = name.strip_prefix("sqrt(").and_then(|rest| rest.strip_suffix(')')) {
-        return format!(r"\sqrt{{{number}}}");
-    }
-    for function in ["cos", "sin"] {
-        let argument = name.strip_prefix(function).and_then(|rest| rest.strip_prefix('('));
-        if let Some(product) = argument.and_then(|rest| rest.strip_suffix(')')) {
-            let factors: Vec<String> = product.split('*').map(latex_name).collect();
-            return format!(r"\{function}({})", factors.join(r"\,"));
-        }
-    }
-    if let Some((letter, index)) = name.split_once('_') {
-        let index = latex_name(index);
-        let single = index.chars().count() == 1;
-        let index = if single { index } else { format!("{{{index}}}") };
-        return format!("{}_{index}", latex_name(letter));
-    }
-    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    if !stem.is_empty() && stem.len() < name.len() {
-        return latex_name(&format!("{stem}_{}", &name[stem.len()..]));
-    }
-    if name == "eps" || name == "epsilon" {
-        r"\varepsilon".to_owned()
-    } else if GREEK.contains(&format!(" {name} ")) {
-        format!(r"\{name}")
-    } else if name.len() > 1 && name.chars().all(|c| c.is_ascii_alphabetic()) {
-        format!(r"\mathrm{{{name}}}")
-    } else {
-        name.to_owned()
-    }
 }
 
 /// Digits of a printed enclosure; the numbers of a result are printed with their errors instead.

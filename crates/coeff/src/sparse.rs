@@ -1,8 +1,8 @@
 //! Sparse polynomials: a sorted list of monomials with their coefficients.
 //!
-//! The representation shared by the polynomial ring of named constants (coefficients in Q) and
-//! by the Lobachevsky ring (coefficients in a ring of constants). Canonical: monomials strictly
-//! increasing, no coefficient zero, so that equality of lists is equality of polynomials.
+//! The representation shared by the polynomials in named constants, their exponents in a list or in one word
+//! (coefficients in Q), by those in the amplitude and by the Lobachevsky ring (coefficients in a ring of constants).
+//! Canonical: monomials strictly increasing, no coefficient zero, so that equality of lists is equality of polynomials.
 
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;

@@ -3,7 +3,6 @@
 use lindstedt_algebra::{RationalAlgebra, Rationals};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_expand::Binding;
-use lindstedt_multimodular::RationalBinding;
 use lindstedt_number::Exact;
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -17,9 +16,16 @@ pub(crate) struct Given<'a> {
     pub parameters: &'a BTreeMap<String, Exact>,
 }
 
+impl Given<'_> {
+    /// The value of a parameter, where it is rational.
+    pub fn value(&self, name: &str) -> Option<Rational> {
+        self.parameters.get(name)?.as_rational().cloned()
+    }
+}
+
 impl Binding<PolynomialRing> for Given<'_> {
     fn parameter(&self, name: &str) -> Option<Polynomial> {
-        Some(self.ring.rational(&RationalBinding::parameter(self, name)?))
+        Some(self.ring.rational(&self.value(name)?))
     }
     fn formal(&self, name: &str, n: usize) -> Option<Polynomial> {
         let sum = Symbol::Sum(u16::try_from(n).ok()?);
@@ -29,15 +35,6 @@ impl Binding<PolynomialRing> for Given<'_> {
 
 impl Binding<Rationals> for Given<'_> {
     fn parameter(&self, name: &str) -> Option<Rational> {
-        RationalBinding::parameter(self, name)
-    }
-    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
-        None
-    }
-}
-
-impl RationalBinding for Given<'_> {
-    fn parameter(&self, name: &str) -> Option<Rational> {
-        self.parameters.get(name)?.as_rational().cloned()
+        self.value(name)
     }
 }

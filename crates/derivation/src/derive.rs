@@ -141,7 +141,8 @@ impl Task<'_> {
         observer: &mut dyn FnMut(usize) -> bool,
     ) -> Result<multimodular::Proved, multimodular::Error> {
         let (equation, stop) = (&self.problem.equation, &self.settings.stop);
-        multimodular::derive(equation, &self.given, self.condition, order, stop, observer)
+        let names = |name: &str| self.given.value(name);
+        multimodular::derive(equation, &names, self.condition, order, stop, observer)
     }
 
     fn by_energy(&self, observer: &mut Observer<'_>) -> Result<Found, DerivationError> {
@@ -169,9 +170,9 @@ impl Task<'_> {
         let Self { problem, settings, ring, .. } = self;
         let mut on_primes = |primes| observer(Progress::Primes(primes));
         let (equation, order, stop) = (&problem.equation, settings.order, &settings.stop);
-        let condition = self.condition;
+        let (names, condition) = (|name: &str| self.given.value(name), self.condition);
         let found =
-            multimodular::frequency(equation, &self.given, condition, order, stop, &mut on_primes)?;
+            multimodular::frequency(equation, &names, condition, order, stop, &mut on_primes)?;
         let lists = [&found.squared, &found.frequency, &found.period].map(Vec::as_slice);
         let found = Found {
             powers: Powers::rational(ring, lists),

@@ -1,5 +1,5 @@
 //! One form for trees that addition and multiplication make equal, and the tree algebra that
-//! loading a problem needs: substitution, searching, x'' set free.
+//! loading a problem needs: searching, x'' set free.
 
 use crate::{Expression, Function};
 use rug::Rational;
@@ -92,6 +92,15 @@ impl Expression {
     pub fn terms(&self) -> &[Self] {
         match self {
             Self::Sum(terms) => terms,
+            single => std::slice::from_ref(single),
+        }
+    }
+
+    /// The factors of a product, or the expression itself as the only one.
+    #[must_use]
+    pub fn factors(&self) -> &[Self] {
+        match self {
+            Self::Product(factors) => factors,
             single => std::slice::from_ref(single),
         }
     }

@@ -200,13 +200,5 @@ impl Reason {
 
 /// The value of a constant expression, exactly, if the parameters have values.
 pub fn evaluate(e: &Expression, values: &BTreeMap<String, Rational>) -> Option<Rational> {
-    put_in(e, values).as_number()
-}
-
-/// An expression with the values of parameters.
-pub(crate) fn put_in(e: &Expression, values: &BTreeMap<String, Rational>) -> Expression {
-    e.substitute(&|e| match e {
-        Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
-        _ => None,
-    })
+    e.with_values(values).as_number()
 }

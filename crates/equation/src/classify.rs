@@ -1,6 +1,6 @@
 //! What an equation is made of, and which methods take it, before any work starts.
 
-use crate::monomials::{MOST_TERMS, Monomial, Monomials, expand};
+use crate::monomials::{MOST_TERMS, Monomial, Monomials, angle, expand};
 use crate::roots::root;
 use crate::symmetry::{Parity, is_reversible, parity};
 use crate::{AccelerationFault, Expression, Function, Problem};
@@ -169,12 +169,10 @@ fn forcing(
 /// omega of cos(omega t + phase) or sin(omega t + phase), at order zero where the force is detuned.
 fn frequency_of(e: &Expression) -> Option<Expression> {
     let Expression::Function(Function::Sin | Function::Cos, argument) = e else { return None };
-    let all = expand(argument)?;
-    let time = |m: &Monomial| m.atoms.get("t") == Some(&1) && m.atoms.len() == 1;
-    let phase = |m: &Monomial| m.atoms.is_empty() && m.order == 0;
-    let linear = all.terms.keys().all(|m| (phase(m) || time(m)) && m.x == 0 && m.velocity == 0);
-    let frequency = all.coefficient(|m| time(m) && m.order == 0);
-    (linear && frequency != Expression::integer(0)).then_some(frequency)
+    let (rate, start) = angle(argument)?;
+    let frequency = rate.coefficient(|m| m.order == 0);
+    let known = start.terms.keys().all(|m| m.order == 0);
+    (known && frequency != Expression::integer(0)).then_some(frequency)
 }
 
 /// (k, m) with (k/m)^2 = q.

@@ -1,6 +1,6 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classification::{Algebra, Classification, Forcing, Method, Reason, evaluate, put_in};
+use crate::classification::{Algebra, Classification, Forcing, Method, Reason, evaluate};
 use crate::monomials::expand;
 use crate::roots::{rational_root, rational_square};
 use crate::saddle::has_saddle;
@@ -215,7 +215,7 @@ fn averaging(
     // (k/m)^2, as of x'' + 2*x and cos(sqrt(2)*t).
     let has_ratio = |frequency: &Expression| {
         let stiffness = evaluate(&parts.stiffness, values).filter(|kappa| !kappa.is_zero())?;
-        rational_root(&(rational_square(&put_in(frequency, values))? / stiffness))
+        rational_root(&(rational_square(&frequency.with_values(values))? / stiffness))
     };
     let of_frequency = |force: &Forcing| {
         let frequency = force.frequency.as_ref()?;

@@ -52,6 +52,24 @@ pub fn expand(e: &Expression) -> Option<Monomials> {
     Some(Monomials { terms, atoms: expander.atoms })
 }
 
+/// The terms with t and those without of an angle rate * t + start; nothing for one of another form or without t.
+#[must_use]
+pub fn angle(argument: &Expression) -> Option<(Monomials, Monomials)> {
+    let Monomials { terms, atoms } = expand(argument)?;
+    let mut rate = Monomials { terms: Terms::new(), atoms };
+    let mut start = rate.clone();
+    for (m, q) in terms {
+        let part = match m.atoms.iter().next() {
+            _ if (m.x, m.velocity) != (0, 0) => return None,
+            None => &mut start,
+            Some((key, 1)) if key == "t" && m.atoms.len() == 1 => &mut rate,
+            Some(_) => return None,
+        };
+        part.terms.insert(m, q);
+    }
+    (!rate.terms.is_empty()).then_some((rate, start))
+}
+
 impl Expression {
     /// The expression multiplied out, its terms in a fixed order: equal for all ways of writing a
     /// polynomial; nothing when that takes too many terms.

@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 /// How to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// One line of ASCII, `x'' + x*(x^2)^delta`.
+    /// One line of ASCII, `x'' + x*(x^2)^delta`, `3/8*mu_1^2`.
     Text,
-    /// Mathematics for LaTeX, `\ddot{x} + x\,(x^{2})^{\delta}`.
+    /// Mathematics for LaTeX, `\ddot{x} + x\,(x^{2})^{\delta}`, `\frac{3}{8}\,\mu_1^{2}`.
     Latex,
 }
 
@@ -119,21 +119,13 @@ impl Printer<'_> {
         let line = match expression {
             Expression::Number(n) => {
                 let magnitude = Rational::from(n.abs_ref());
-                return Written { line: self.number(&magnitude), number: true };
+                return Written { line: print_rational(&magnitude, self.style), number: true };
             }
-            Expression::Sum(_) => self.parenthesize(&self.sum(expression)),
+            Expression::Sum(_) => parenthesize(&self.sum(expression), self.style),
             Expression::Function(function, argument) => self.function(*function, argument, last),
             other => self.atom(other),
         };
         Written { line, number: false }
-    }
-
-    fn number(&self, q: &Rational) -> String {
-        if !self.latex() || q.is_integer() {
-            return q.to_string();
-        }
-        let sign = if q.cmp0() == Ordering::Less { "-" } else { "" };
-        format!(r"{sign}\frac{{{}}}{{{}}}", q.numer().clone().abs(), q.denom())
     }
 
     /// An expression that can stand under or (in text) over the sign of a power: parentheses
@@ -147,7 +139,7 @@ impl Printer<'_> {
             _ => false,
         };
         let line = self.sum(expression);
-        if needs { self.parenthesize(&line) } else { line }
+        if needs { parenthesize(&line, self.style) } else { line }
     }
 
     /// Everything that is not a sum, a product, a number or an elementary function; those are
@@ -168,7 +160,7 @@ impl Printer<'_> {
             }
             (Expression::Formal(name, argument), latex) => {
                 let name = if latex { latex_name(name) } else { name.clone() };
-                format!("{name}{}", self.parenthesize(&self.sum(argument)))
+                format!("{name}{}", parenthesize(&self.sum(argument), self.style))
             }
             (Expression::Function(function, argument), _) => {
                 self.function(*function, argument, true)
@@ -197,7 +189,7 @@ impl Printer<'_> {
             Function::Exp => return format!("e^{{{line}}}"),
             Function::Abs => return format!(r"\left|{line}\right|"),
             Function::Sign => {
-                return format!(r"\operatorname{{sign}}{}", self.parenthesize(&line));
+                return format!(r"\operatorname{{sign}}{}", parenthesize(&line, self.style));
             }
             Function::Ln | Function::Sin | Function::Cos => {}
         }
@@ -212,7 +204,7 @@ impl Printer<'_> {
             let space = if line.starts_with('\\') { "" } else { " " };
             return format!(r"\{name}{space}{line}");
         }
-        format!(r"\{name}{}", self.parenthesize(&line))
+        format!(r"\{name}{}", parenthesize(&line, self.style))
     }
 
     /// x, x', x''(t - T); the second unknown is x_2.
@@ -233,16 +225,8 @@ impl Printer<'_> {
         };
         let primes = if self.latex() { String::new() } else { "'".repeat(n) };
         let time = unknown.delay.as_deref().map(|delay| Expression::Time - delay.clone());
-        let time = time.map_or_else(String::new, |time| self.parenthesize(&self.sum(&time)));
+        let time = time.map_or_else(String::new, |time| parenthesize(&self.sum(&time), self.style));
         format!("{stem}{index}{primes}{time}")
-    }
-
-    fn parenthesize(&self, line: &str) -> String {
-        if self.latex() && line.contains(r"\frac") {
-            format!(r"\left({line}\right)")
-        } else {
-            format!("({line})")
-        }
     }
 }
 
@@ -257,22 +241,62 @@ fn flatten<'a>(expression: &'a Expression, factors: &mut Vec<&'a Expression>) {
     }
 }
 
+/// A sum in parentheses, growing ones around fractions in LaTeX.
+#[must_use]
+pub fn parenthesize(sum: &str, style: Style) -> String {
+    if style == Style::Latex && sum.contains(r"\frac") {
+        format!(r"\left({sum}\right)")
+    } else {
+        format!("({sum})")
+    }
+}
+
+/// `-3/8`, in LaTeX `-\frac{3}{8}`; integers without denominator.
+#[must_use]
+pub fn print_rational(q: &Rational, style: Style) -> String {
+    if style == Style::Text || q.is_integer() {
+        return q.to_string();
+    }
+    let sign = if q.cmp0() == Ordering::Less { "-" } else { "" };
+    let numerator = q.numer().clone().abs();
+    format!(r"{sign}\frac{{{numerator}}}{{{}}}", q.denom())
+}
+
 /// Names that are Greek letters; `eps` and `epsilon` are \varepsilon.
 const GREEK: &str = " alpha beta gamma delta zeta eta theta iota kappa lambda mu nu xi pi rho \
     sigma tau upsilon phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ";
 
-/// A name in LaTeX: `omega_0` and `omega0` are `\omega_0`, `R_in` is `R_{\mathrm{in}}`. The rules
-/// of `lindstedt_coeff::print::latex_name`, from which this crate may not import.
-fn latex_name(name: &str) -> String {
-    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+/// A name of ASCII letters in LaTeX: `mu_1` and `mu1` are `\mu_1`, `R_in` is `R_{\mathrm{in}}`, `ln(a)` is
+/// `\ln a`. Anything that is no name is left as it is.
+#[must_use]
+pub fn latex_name(name: &str) -> String {
+    if let Some(argument) = name.strip_prefix("ln(").and_then(|rest| rest.strip_suffix(')')) {
+        let simple = argument.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let argument = latex_name(argument);
+        let space = if argument.starts_with('\\') { "" } else { " " };
+        return if simple { format!(r"\ln{space}{argument}") } else { format!(r"\ln({argument})") };
+    }
+    if let Some(number) = name.strip_prefix("sqrt(").and_then(|rest| rest.strip_suffix(')')) {
+        return format!(r"\sqrt{{{number}}}");
+    }
+    for function in ["cos", "sin"] {
+        let argument = name.strip_prefix(function).and_then(|rest| rest.strip_prefix('('));
+        if let Some(product) = argument.and_then(|rest| rest.strip_suffix(')')) {
+            let factors: Vec<String> = product.split('*').map(latex_name).collect();
+            return format!(r"\{function}({})", factors.join(r"\,"));
+        }
+    }
     if let Some((letter, index)) = name.split_once('_') {
         let index = latex_name(index);
         let single = index.chars().count() == 1;
         let index = if single { index } else { format!("{{{index}}}") };
-        format!("{}_{index}", latex_name(letter))
-    } else if !stem.is_empty() && stem.len() < name.len() {
-        latex_name(&format!("{stem}_{}", &name[stem.len()..]))
-    } else if name == "eps" || name == "epsilon" {
+        return format!("{}_{index}", latex_name(letter));
+    }
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    if !stem.is_empty() && stem.len() < name.len() {
+        return latex_name(&format!("{stem}_{}", &name[stem.len()..]));
+    }
+    if name == "eps" || name == "epsilon" {
         r"\varepsilon".to_owned()
     } else if GREEK.contains(&format!(" {name} ")) {
         format!(r"\{name}")

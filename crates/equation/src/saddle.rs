@@ -26,11 +26,7 @@ pub(crate) fn has_saddle(rest: &Expression, values: &BTreeMap<String, Rational>)
     };
     // A multiple of x changes its sign at zero alone.
     let is_multiple = |term: &&Expression| {
-        let factors = match term {
-            Expression::Product(factors) => factors,
-            single => std::slice::from_ref(*single),
-        };
-        let mut own = factors.iter().filter(|f| f.contains(&Expression::DISPLACEMENT));
+        let mut own = term.factors().iter().filter(|f| f.contains(&Expression::DISPLACEMENT));
         own.next() == Some(&Expression::DISPLACEMENT) && own.next().is_none()
     };
     if terms.iter().all(is_multiple) {

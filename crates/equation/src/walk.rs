@@ -3,6 +3,7 @@
 
 use crate::{Expression, Function, Unknown};
 use rug::Rational;
+use std::collections::BTreeMap;
 
 /// What an expression is evaluated over. Nothing, from any of them, is nothing in the end.
 pub trait Operations {
@@ -95,6 +96,15 @@ impl Expression {
                 Some(change(&now).unwrap_or(now).delayed(then))
             }
             leaf => leaf.children().next().is_none().then(|| change(leaf)).flatten(),
+        })
+    }
+
+    /// The expression with the values of parameters.
+    #[must_use]
+    pub fn with_values(&self, values: &BTreeMap<String, Rational>) -> Self {
+        self.substitute(&|e| match e {
+            Self::Parameter(name) => values.get(name).cloned().map(Self::Number),
+            _ => None,
         })
     }
 

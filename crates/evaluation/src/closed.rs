@@ -6,7 +6,7 @@ use rug::{Float, Rational};
 
 /// The arithmetic-geometric mean of two positive numbers; the mean lies between the iterates.
 /// O(log p) square roots after O(log |log a/b|) first ones.
-pub(crate) fn agm(balls: Balls, a: &Ball, b: &Ball) -> Option<Ball> {
+pub fn agm(balls: Balls, a: &Ball, b: &Ball) -> Option<Ball> {
     let (mut a, mut b) = (a.clone(), b.clone());
     for _ in 0..200 {
         if !a.is_positive() || !b.is_positive() {
@@ -23,7 +23,7 @@ pub(crate) fn agm(balls: Balls, a: &Ball, b: &Ball) -> Option<Ball> {
     None
 }
 
-/// ln Gamma(x) for x > 1/2 - 1/10: MPFR rounds correctly at the midpoint; psi is monotone with
+/// ln Gamma(x) for x of 0.499 or more: MPFR rounds correctly at the midpoint; psi is monotone with
 /// ln x - 1/x < psi(x) < ln x, so |psi| <= |ln m| + 4 on a ball of radius below 1/10.
 fn ln_gamma(balls: Balls, x: &Ball) -> Option<Ball> {
     if *x.radius() > 0.1 || *x.midpoint() < 0.499 {

@@ -62,11 +62,7 @@ pub fn degrees<A: PhaseAlgebra>(
 }
 
 /// The rational numbers that occur in an equation.
-pub(crate) fn equation_numbers<A>(equation: &Equation<A>) -> Vec<Rational>
-where
-    A: PhaseAlgebra,
-    A::Constants: Ring<Element = Rational>,
-{
+pub(crate) fn equation_numbers(nodes: &[Node<Rational>]) -> Vec<Rational> {
     let of_node = |node: &Node<Rational>| -> Vec<Rational> {
         match node {
             Node::Constant(c) => vec![c.clone()],
@@ -74,7 +70,7 @@ where
             _ => Vec::new(),
         }
     };
-    equation.nodes.iter().flat_map(of_node).collect()
+    nodes.iter().flat_map(of_node).collect()
 }
 
 /// A common denominator of the rational numbers that occur in an equation: 1 for x'' + x + eps x^3, 2 for
@@ -85,7 +81,7 @@ where
     A::Constants: Ring<Element = Rational>,
 {
     let mut denominator = Integer::from(1);
-    for number in equation_numbers(equation) {
+    for number in equation_numbers(&equation.nodes) {
         denominator.lcm_mut(number.denom());
     }
     denominator

@@ -72,8 +72,10 @@ pub(crate) enum Node<E> {
 pub trait Binding<C: Ring> {
     /// The constant that a parameter stands for.
     fn parameter(&self, name: &str) -> Option<C::Element>;
-    /// F_n of a formal function F.
-    fn formal(&self, name: &str, n: usize) -> Option<C::Element>;
+    /// F_n of a formal function F; nothing where there are none.
+    fn formal(&self, _: &str, _: usize) -> Option<C::Element> {
+        None
+    }
     /// Whether a parameter is a series in the small parameter that is found with the solution.
     fn is_sought(&self, _: &str) -> bool {
         false

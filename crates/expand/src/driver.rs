@@ -125,7 +125,6 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 /// struct NoNames;
 /// impl Binding<Rationals> for NoNames {
 ///     fn parameter(&self, _: &str) -> Option<Rational> { None }
-///     fn formal(&self, _: &str, _: usize) -> Option<Rational> { None }
 /// }
 /// let (algebra, x) = (Trigonometric::new(Rationals), Expression::DISPLACEMENT);
 /// let duffing = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);

@@ -4,9 +4,10 @@
 //! omega_0 T and omega T during a delay T.
 
 use crate::ExpandError;
+use lindstedt_algebra::common_measure;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function, Unknown};
-use rug::{Integer, Rational};
+use rug::Rational;
 
 /// The delays and the forcing of an equation.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,7 +59,7 @@ impl Excitation {
                 if self.number.is_zero() {
                     (self.number, self.symbols) = (number.abs(), symbols);
                 } else if self.symbols == symbols {
-                    self.number = common_divisor(&self.number, &number);
+                    self.number = common_measure(&self.number, &number);
                 } else {
                     return Err(unsupported(expression));
                 }
@@ -107,13 +108,6 @@ fn flatten<'a>(expression: &'a Expression, factors: &mut Vec<&'a Expression>) {
         Expression::Product(list) => list.iter().for_each(|factor| flatten(factor, factors)),
         single => factors.push(single),
     }
-}
-
-/// The largest rational number of which both are integer multiples.
-fn common_divisor(p: &Rational, q: &Rational) -> Rational {
-    let left = Integer::from(p.numer() * q.denom());
-    let right = Integer::from(q.numer() * p.denom());
-    Rational::from((left.gcd(&right), Integer::from(p.denom() * q.denom())))
 }
 
 #[cfg(test)]

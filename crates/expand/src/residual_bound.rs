@@ -113,13 +113,14 @@ impl ResidualBound {
             expected: Vec::new(),
             surplus: VecDeque::new(),
         };
-        bound.rebuild(&equation_numbers(equation));
+        bound.rebuild(&[]);
         Ok(bound)
     }
 
-    /// New generators for the numbers of the equation and those taken so far, and everything anew.
-    fn rebuild(&mut self, numbers: &[Rational]) {
-        let own = [&self.stiffness].into_iter().chain(numbers);
+    /// New generators for the numbers of the equation, those taken so far and some more, and everything anew.
+    fn rebuild(&mut self, more: &[Rational]) {
+        let numbers = equation_numbers(&self.nodes);
+        let own = [&self.stiffness].into_iter().chain(&numbers).chain(more);
         let mut denominators: Vec<Integer> = own.map(|q| q.denom().clone()).collect();
         denominators.push(self.stiffness.numer().clone().abs());
         for taken in &self.taken {
@@ -140,18 +141,6 @@ impl ResidualBound {
         for n in 0..self.taken.len() {
             self.measure(n);
         }
-    }
-
-    /// The numbers of the equation, for [`Self::rebuild`].
-    fn numbers(&self) -> Vec<Rational> {
-        let of_node = |node: &Node<Rational>| -> Vec<Rational> {
-            match node {
-                Node::Constant(c) => vec![c.clone()],
-                Node::Sum(terms) => terms.iter().map(|(q, _)| q.clone()).collect(),
-                _ => Vec::new(),
-            }
-        };
-        self.nodes.iter().flat_map(of_node).collect()
     }
 
     /// The sizes of order n, which is taken, and of the nodes there. Whether the generators know them.
@@ -270,8 +259,7 @@ impl ResidualBound {
         });
         let expected = std::mem::take(&mut self.expected);
         if !self.measure(n) {
-            let numbers = self.numbers();
-            self.rebuild(&numbers);
+            self.rebuild(&[]);
         } else if let (false, Some(Some(x))) = (expected.is_empty(), self.sizes.functions[0].get(n))
         {
             let surplus = expected.iter().zip(&x.exponents).enumerate();

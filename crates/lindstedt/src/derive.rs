@@ -191,12 +191,9 @@ impl Oscillator {
         value.description = free.describe().ok();
         let diverges = value.convergence.as_ref().filter(|found| found.diverges());
         remarks.extend(diverges.map(divergence).map(Remark));
-        let checked = value.checked_orders == value.order;
-        let stopped = value.order < order || !checked;
-        let standing = self.standing(stopped, value.order, checked, &mut remarks);
+        let orders = (order, value.order, value.checked_orders == value.order);
         let tier = if value.exact { "exact" } else { "certified" };
-        let header = self.header(at, Some(value.order), tier, start);
-        Ok(Answer { header, value, standing, remarks })
+        Ok(self.finished(at, orders, tier, remarks, start).map(|()| value))
     }
 
     /// The averaged expansion, the values that were put in, and what is to be said of them.
@@ -304,6 +301,19 @@ impl Oscillator {
         };
         let message = format!("stopped before the expansion was finished{why}");
         Refused::stopped(message, "raise --limit-seconds or lower --order").into()
+    }
+
+    /// An answer to orders as asked for, done and perhaps checked, at these values; without its value.
+    pub(crate) fn finished(
+        &self,
+        at: impl IntoIterator<Item = (impl ToString, impl ToString)>,
+        (asked, done, checked): (usize, usize, bool),
+        tier: &'static str,
+        mut remarks: Vec<Remark>,
+        start: Instant,
+    ) -> Answer<()> {
+        let standing = self.standing(done < asked || !checked, done, checked, &mut remarks);
+        Answer { header: self.header(at, Some(done), tier, start), value: (), standing, remarks }
     }
 
     /// Complete, or stopped after an order, which is said.

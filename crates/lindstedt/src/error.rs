@@ -130,7 +130,7 @@ impl Refusal for Error {
     fn parts(&self) -> (Kind, &'static str, String) {
         use Kind::{NoAnswer, Undecided, Usage};
         let (kind, code, hint) = match self {
-            Self::Refused(it) => return (it.kind, it.code, it.hint.clone()),
+            Self::Refused(refused) => return refused.parts(),
             Self::Derivation(error) => return error.parts(),
             Self::Evaluation(error) => return error.parts(),
             Self::Simulate(error) => return error.parts(),

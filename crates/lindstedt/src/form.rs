@@ -109,12 +109,8 @@ impl Oscillator {
     /// The place of a term as it occurs multiplied out, without its factors eps and -1, or of what
     /// it is a product of: `:line:column`, or nothing.
     fn place(&self, term: &Expression) -> String {
-        let factors = match term {
-            Expression::Product(list) => list.clone(),
-            single => vec![single.clone()],
-        };
         let plain = |e: &Expression| matches!(e, Expression::Small | Expression::Number(_));
-        let bare: Vec<Expression> = factors.into_iter().filter(|e| !plain(e)).collect();
+        let bare: Vec<Expression> = term.factors().iter().filter(|e| !plain(e)).cloned().collect();
         let varying: Vec<Expression> = bare.iter().filter(|e| !e.is_constant()).cloned().collect();
         let product = |list: Vec<Expression>| Expression::Product(list).canonical();
         let tries = [term.clone(), product(bare), product(varying.clone())];

@@ -162,14 +162,12 @@ impl Oscillator {
             let text = format!("functions of x are their Taylor polynomials of degree {degree}");
             remarks.push(Remark(text));
         }
-        let checked = cycle.checked_orders.is_some();
-        let standing = self.standing(done < order || !checked, done, checked, &mut remarks);
+        let orders = (order, done, cycle.checked_orders.is_some());
         let at = values.into_iter().filter(|(other, _)| other != name);
         let tier = if cycle.exact { "exact" } else { "certified" };
-        let header = self.header(at, Some(done), tier, start);
         let problem = self.problem().clone();
         let value = HopfSeries { problem, unknown: name.to_owned(), near, cycle };
-        Ok(Answer { header, value, standing, remarks })
+        Ok(self.finished(at, orders, tier, remarks, start).map(|()| value))
     }
 
     fn check_hopf_name(&self, name: &str) -> Result<(), Error> {

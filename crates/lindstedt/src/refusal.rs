@@ -164,4 +164,10 @@ impl fmt::Display for Refused {
     }
 }
 
+impl Refusal for Refused {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        (self.kind, self.code, self.hint.clone())
+    }
+}
+
 impl std::error::Error for Refused {}

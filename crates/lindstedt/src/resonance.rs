@@ -158,13 +158,11 @@ impl Oscillator {
             Some(rate) => resonance::slow_flow_from(problem, &settings, rate, &mut goes_on),
         };
         let value = found.map_err(|error| self.refusal(error.into()))?;
-        let mut remarks = self.remarks().to_vec();
-        let checked = value.checked_orders.is_some();
-        let stopped = value.order < order || !checked;
-        let standing = self.standing(stopped, value.order, checked, &mut remarks);
+        let orders = (order, value.order, value.checked_orders.is_some());
         let tier = if value.enclosed.is_some() { "certified" } else { "exact" };
-        let header = self.header(&value.system.bound, Some(value.order), tier, start);
-        Ok(Answer { header, value, standing, remarks })
+        let remarks = self.remarks().to_vec();
+        let answer = self.finished(&value.system.bound, orders, tier, remarks, start);
+        Ok(answer.map(|()| value))
     }
 
     fn averaging(&self, order: usize, work: &Work) -> AveragingSettings {
@@ -219,12 +217,10 @@ impl Oscillator {
         let mut goes_on = |progress| work.goes_on(progress);
         let found = resonance::sought(self.problem(), name, &settings, &mut goes_on);
         let value = found.map_err(|error| self.refusal(error.into()))?;
-        let mut remarks = self.remarks().to_vec();
         let done = value.branches.iter().map(SoughtBranch::order).min().unwrap_or(0);
         let checked = value.branches.iter().all(|branch| branch.checked_orders.is_some());
-        let standing = self.standing(done < order || !checked, done, checked, &mut remarks);
-        let header = self.header(self.given(), Some(done), "exact", start);
-        Ok(Answer { header, value, standing, remarks })
+        let (orders, remarks) = ((order, done, checked), self.remarks().to_vec());
+        Ok(self.finished(self.given(), orders, "exact", remarks, start).map(|()| value))
     }
 
     /// A nonlinear normal mode, by its number from 1: all unknowns move with one frequency,
@@ -258,12 +254,9 @@ impl Oscillator {
         let mut goes_on = |progress| work.goes_on(progress);
         let found = resonance::normal_mode(self.problem(), mode, &settings, &mut goes_on);
         let value = found.map_err(|error| self.refusal(error.into()))?;
-        let mut remarks = self.remarks().to_vec();
-        let checked = value.checked_orders.is_some();
-        let stopped = value.order < order || !checked;
-        let standing = self.standing(stopped, value.order, checked, &mut remarks);
+        let orders = (order, value.order, value.checked_orders.is_some());
         let tier = if value.enclosed.is_some() { "certified" } else { "exact" };
-        let header = self.header(self.given(), Some(value.order), tier, start);
-        Ok(Answer { header, value, standing, remarks })
+        let remarks = self.remarks().to_vec();
+        Ok(self.finished(self.given(), orders, tier, remarks, start).map(|()| value))
     }
 }

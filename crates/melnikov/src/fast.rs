@@ -3,7 +3,6 @@
 //! gamma = G cosh(z)/(2z), z = pi omega/(2 sqrt a), G as in [`crate::StickSlip::g`]. Why
 //! 1 - |v*|/V is not formed as it stands: `docs/src/melnikov.md`.
 
-use crate::hyperbolic::FRAC_PI_2_LOW;
 use crate::{FastPoint, MelnikovError};
 use std::f64::consts::{FRAC_PI_2, LN_2};
 
@@ -26,6 +25,9 @@ struct Scaled {
     mantissa: f64,
     exponent: i64,
 }
+
+/// pi/2 - FRAC_PI_2, the second word of pi/2 in double-double.
+const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;
 
 const SPLIT: i32 = 1 << 10;
 

@@ -46,5 +46,5 @@ pub use potential::{Branch, Potential};
 pub use root::enclose_root;
 pub use subharmonic::{Region, Subharmonic, subharmonic};
 pub use surface::surface;
-pub use system::{Class, System, Threshold, Validity, Verdict, midpoint_and_radius};
+pub use system::{Class, System, Threshold, Validity, Verdict};
 pub use zeros::ParameterZeros;

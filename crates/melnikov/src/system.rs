@@ -5,7 +5,6 @@ use crate::forcing::ForcingWork;
 use crate::{Branch, Damping, Forcing, Friction, Harmonic, MelnikovError, Potential};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
-use rug::Float;
 
 /// How a number is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -288,11 +287,4 @@ impl System {
         }
         Ok(())
     }
-}
-
-/// The midpoint of a ball as f64 with the radius.
-#[must_use]
-pub fn midpoint_and_radius(ball: &Ball) -> (f64, f64) {
-    let radius: &Float = ball.radius();
-    (ball.midpoint().to_f64(), radius.to_f64())
 }

@@ -13,7 +13,7 @@
 use crate::image::{Image, Job};
 use crate::images::Images;
 use crate::lift::Remaindering;
-use crate::{Error, RationalBinding, Setting};
+use crate::{Error, Names, Setting};
 use lindstedt_algebra::{RationalAlgebra, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{Degrees, ExpandError, Expected, FrequencyBound};
@@ -70,23 +70,19 @@ impl CheckedImages {
 ///
 /// ```
 /// use lindstedt_algebra::{RationalAlgebra, Stop};
-/// use lindstedt_multimodular::{RationalBinding, frequency};
+/// use lindstedt_multimodular::frequency;
 /// use rug::Rational;
 ///
-/// struct NoNames;
-/// impl RationalBinding for NoNames {
-///     fn parameter(&self, _: &str) -> Option<Rational> { None }
-/// }
 /// let cycle = lindstedt_problems::find("van-der-pol").ok_or("no such problem")?;
 /// let (equation, condition) = (&cycle.equation, cycle.conditions[0]);
-/// let found = frequency(equation, &NoNames, condition, 4, &Stop::default(), &mut |_| true)?;
+/// let found = frequency(equation, &|_| None, condition, 4, &Stop::default(), &mut |_| true)?;
 /// assert_eq!(found.frequency[2], Rational::from((-1, 16)));
 /// assert_eq!(found.frequency[4], Rational::from((17, 3072)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn frequency(
     equation: &Expression,
-    binding: &dyn RationalBinding,
+    binding: &Names<'_>,
     condition: Condition,
     order: usize,
     stop: &Stop,
@@ -239,7 +235,7 @@ mod tests {
     use super::*;
     use crate::derive;
     use crate::place::Place;
-    use crate::tests::{NoNames, equations, van_der_pol, with_images};
+    use crate::tests::{equations, van_der_pol, with_images};
     use lindstedt_algebra::Ring;
     use lindstedt_expand::{Equation, Request, Trace, trace};
     use lindstedt_phase::modular::{ModularElement, Residues};
@@ -254,8 +250,8 @@ mod tests {
             for condition in conditions {
                 for order in [0, 1, 2, 9] {
                     let all = &mut |_: usize| true;
-                    let whole = derive(&equation, &NoNames, condition, order, &stop, all);
-                    let alone = frequency(&equation, &NoNames, condition, order, &stop, all);
+                    let whole = derive(&equation, &|_| None, condition, order, &stop, all);
+                    let alone = frequency(&equation, &|_| None, condition, order, &stop, all);
                     match (alone, whole) {
                         (Ok(alone), Ok(whole)) => {
                             let place = format!("{index} {condition:?} {order}");
@@ -279,8 +275,8 @@ mod tests {
     fn bounds_hold_and_are_sharp() {
         let (equation, stop, order) = (van_der_pol(), Stop::default(), 24);
         let cycle = Condition::LimitCycle;
-        let setting = Setting::new(&equation, &NoNames, cycle, order, &stop).unwrap();
-        let whole = derive(&equation, &NoNames, cycle, order, &stop, &mut |_| true).unwrap();
+        let setting = Setting::new(&equation, &|_| None, cycle, order, &stop).unwrap();
+        let whole = derive(&equation, &|_| None, cycle, order, &stop, &mut |_| true).unwrap();
         let reaction = setting.reaction.as_ref();
         let amplitude = Rational::from(2);
         let mut bound = FrequencyBound::new(setting.bound.clone(), &amplitude, reaction).unwrap();
@@ -303,7 +299,7 @@ mod tests {
             all.extend(sines);
             bound.take(expected, numbers, &all);
         }
-        let alone = frequency(&equation, &NoNames, cycle, order, &stop, &mut |_| true).unwrap();
+        let alone = frequency(&equation, &|_| None, cycle, order, &stop, &mut |_| true).unwrap();
         let least = (longest / 30) as usize;
         let primes = alone.images.primes;
         assert!((least..=2 * least).contains(&primes), "{primes} {least}");
@@ -413,7 +409,7 @@ mod tests {
     fn with_traces(less: usize, test: impl Fn(&Job<'_>, &[Degrees], Over<'_>, &Trace<Modular>)) {
         let (equation, stop) = (van_der_pol(), Stop::default());
         let cycle = Condition::LimitCycle;
-        let setting = Setting::new(&equation, &NoNames, cycle, 6, &stop).unwrap();
+        let setting = Setting::new(&equation, &|_| None, cycle, 6, &stop).unwrap();
         let points = Modular::points_for_first_harmonic(2 * 6 + 1).0 - less;
         let job = Job { points, ..setting.job.clone() };
         let field = setting.primes(8 * points as u64).next().unwrap();
@@ -430,7 +426,7 @@ mod tests {
             images[0].change(4, Place::Squared, |value| ring.add(&value, &ring.one()));
             let stop = Stop::default();
             let setting =
-                Setting::new(job.equation, &NoNames, Condition::LimitCycle, 6, &stop).unwrap();
+                Setting::new(job.equation, &|_| None, Condition::LimitCycle, 6, &stop).unwrap();
             let reaction = setting.reaction.as_ref();
             let bound =
                 FrequencyBound::new(setting.bound.clone(), &Rational::from(2), reaction).unwrap();

@@ -3,7 +3,7 @@
 
 use crate::lifted::Lifted;
 use crate::place::Place;
-use crate::{Error, Over, RationalBinding};
+use crate::{Error, Names, Over};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_equation::Expression;
 use lindstedt_expand::{
@@ -26,7 +26,7 @@ const SERIES: [Place; 3] = [Place::Squared, Place::Frequency, Place::Period];
 #[derive(Clone)]
 pub(crate) struct Job<'a> {
     pub equation: &'a Expression,
-    pub binding: &'a dyn RationalBinding,
+    pub binding: &'a Names<'a>,
     pub request: Request,
     /// kappa.
     pub stiffness: Rational,

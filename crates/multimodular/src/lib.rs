@@ -55,21 +55,15 @@ pub enum Error {
     OutOfPrimes,
 }
 
-/// Names bound to rational numbers.
-pub trait RationalBinding: Sync {
-    /// The value of a parameter.
-    fn parameter(&self, name: &str) -> Option<Rational>;
-}
+/// The rational numbers that names of parameters stand for.
+pub type Names<'a> = dyn Fn(&str) -> Option<Rational> + Sync + 'a;
 
 /// The same names over another ring of constants.
-struct Over<'a, C>(&'a dyn RationalBinding, &'a C);
+struct Over<'a, C>(&'a Names<'a>, &'a C);
 
 impl<C: RationalAlgebra> Binding<C> for Over<'_, C> {
     fn parameter(&self, name: &str) -> Option<C::Element> {
-        self.0.parameter(name).map(|q| self.1.rational(&q))
-    }
-    fn formal(&self, _: &str, _: usize) -> Option<C::Element> {
-        None
+        (self.0)(name).map(|q| self.1.rational(&q))
     }
 }
 
@@ -157,22 +151,18 @@ impl Proved {
 ///
 /// ```
 /// use lindstedt_algebra::Stop;
-/// use lindstedt_multimodular::{RationalBinding, derive};
+/// use lindstedt_multimodular::derive;
 /// use rug::Rational;
 ///
-/// struct NoNames;
-/// impl RationalBinding for NoNames {
-///     fn parameter(&self, _: &str) -> Option<Rational> { None }
-/// }
 /// let duffing = lindstedt_problems::find("duffing").ok_or("no such problem")?;
 /// let (equation, condition) = (&duffing.equation, duffing.conditions[0]);
-/// let proved = derive(equation, &NoNames, condition, 3, &Stop::default(), &mut |_| true)?;
+/// let proved = derive(equation, &|_| None, condition, 3, &Stop::default(), &mut |_| true)?;
 /// assert_eq!(proved.frequency[3], Rational::from((81, 2048)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive(
     equation: &Expression,
-    binding: &dyn RationalBinding,
+    binding: &Names<'_>,
     condition: Condition,
     order: usize,
     stop: &Stop,
@@ -207,7 +197,7 @@ struct Setting<'a> {
 impl<'a> Setting<'a> {
     fn new(
         equation: &'a Expression,
-        binding: &'a dyn RationalBinding,
+        binding: &'a Names<'a>,
         condition: Condition,
         order: usize,
         stop: &'a Stop,

@@ -4,7 +4,7 @@ use crate::image::{Group, Image, Job};
 use crate::lift::Remaindering;
 use crate::lifted::Lifted;
 use crate::place::Place;
-use crate::{Error, RationalAlgebraOfPhase, RationalBinding, derive};
+use crate::{Error, RationalAlgebraOfPhase, derive};
 use lindstedt_algebra::{Rationals, Ring, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{
@@ -15,19 +15,10 @@ use lindstedt_phase::modular::{LANES, PrimeFields};
 use lindstedt_phase::{Modular, Trigonometric};
 use rug::{Integer, Rational};
 
-pub(crate) struct NoNames;
-
-impl RationalBinding for NoNames {
-    fn parameter(&self, _: &str) -> Option<Rational> {
-        None
-    }
-}
+struct NoNames;
 
 impl Binding<Rationals> for NoNames {
     fn parameter(&self, _: &str) -> Option<Rational> {
-        None
-    }
-    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
         None
     }
 }
@@ -96,7 +87,7 @@ fn agrees_with_rational_arithmetic() {
         for condition in conditions {
             for order in [0, 1, 2, 3, 9] {
                 let stop = Stop::default();
-                let found = derive(&equation, &NoNames, condition, order, &stop, &mut |_| true);
+                let found = derive(&equation, &|_| None, condition, order, &stop, &mut |_| true);
                 match (found, directly(&equation, condition, order)) {
                     (Ok(found), Ok(direct)) => {
                         let found = found.expansion();
@@ -142,7 +133,7 @@ fn groups_of_order(order: usize, count: usize, test: impl Fn(&Job<'_>, Vec<(Prim
     let (points, roots) = Modular::points_for_degree(2 * order + 3);
     let stiffness = Rational::from(1);
     let job =
-        Job { equation: &equation, binding: &NoNames, request, stiffness, points, stop: &stop };
+        Job { equation: &equation, binding: &|_| None, request, stiffness, points, stop: &stop };
     let fields = PrimeFields::with_roots_of_unity(roots).take(count);
     test(&job, fields.map(|field| (field, job.image(field, &[]).unwrap().unwrap())).collect());
 }
@@ -411,10 +402,10 @@ fn stopping_is_no_result() {
     let equation = van_der_pol();
     let cycle = Condition::LimitCycle;
     let stopped = Err(Error::Expand(ExpandError::Interrupted { order: 12 }));
-    let answer = derive(&equation, &NoNames, cycle, 12, &Stop::default(), &mut |_| false);
+    let answer = derive(&equation, &|_| None, cycle, 12, &Stop::default(), &mut |_| false);
     assert_eq!(answer.map(|proved| proved.primes), stopped);
     let stop = Stop::new(|| true);
-    let answer = derive(&equation, &NoNames, cycle, 12, &stop, &mut |_| true);
+    let answer = derive(&equation, &|_| None, cycle, 12, &stop, &mut |_| true);
     assert_eq!(answer.map(|proved| proved.primes), stopped);
 }
 
@@ -436,7 +427,7 @@ fn the_energy_integral_agrees() {
             let integral = integral.unwrap();
             let (initial, stop) = (Condition::InitialAmplitude, Stop::default());
             assert!(conditions.contains(&initial));
-            let found = derive(&equation, &NoNames, initial, order, &stop, &mut |_| true).unwrap();
+            let found = derive(&equation, &|_| None, initial, order, &stop, &mut |_| true).unwrap();
             assert_eq!(integral.stiffness, found.stiffness);
             assert_eq!(integral.frequency_squared, found.squared);
             assert_eq!(integral.frequency, found.frequency);

@@ -17,7 +17,6 @@ pub mod digits;
 mod error;
 mod exact;
 pub mod interval;
-mod measure;
 mod named;
 mod number;
 mod ratio;
@@ -26,7 +25,6 @@ mod whole;
 
 pub use error::NumberError;
 pub use exact::{Exact, decimal};
-pub use measure::common_measure;
 pub use named::{Object, as_map};
 pub use number::{Number, Status, certified, rational};
 pub use ratio::{from_ratio, to_ratio};

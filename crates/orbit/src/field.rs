@@ -11,7 +11,7 @@ use crate::operation::Operation;
 use crate::polynomial::{Polynomial, Term};
 use crate::space::Signs;
 use crate::upward::Up;
-use lindstedt_number::common_measure;
+use lindstedt_algebra::common_measure;
 use rug::Rational;
 
 /// A function of a polynomial in the variables before it.

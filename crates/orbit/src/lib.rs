@@ -71,7 +71,7 @@ mod upward;
 mod write;
 
 pub use failure::Failure;
-pub use family::{Branch, Cover, Member, branches, cover, family, family_all, prove_each};
+pub use family::{Branch, Cover, Member, branches, cover, family, prove_each};
 pub use field::Field;
 pub use guesses::guesses;
 pub use modes::guesses_all;

@@ -8,9 +8,9 @@ use crate::polynomial::{Polynomial, Spread, Term};
 use crate::reader::Reader;
 use crate::sum::{By, Key, Sum};
 use crate::upward::Up;
+use lindstedt_algebra::common_measure;
 use lindstedt_equation::{AccelerationFault, Expression, Problem};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::common_measure;
 use rug::ops::Pow;
 use rug::{Complete, Rational};
 use std::collections::BTreeMap;
@@ -67,12 +67,7 @@ impl Field {
         small: &str,
         values: &BTreeMap<String, Rational>,
     ) -> Result<Self, Failure> {
-        let value = |e: &Expression| match e {
-            Expression::Small => values.get(small).cloned().map(Expression::Number),
-            Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
-            _ => None,
-        };
-        let equations: Vec<_> = equations.iter().map(|e| e.substitute(&value)).collect();
+        let equations: Vec<_> = equations.iter().map(|e| valued(e, small, values)).collect();
         read(&equations, small, &BTreeMap::new(), Balls::new(64), None)
     }
 
@@ -169,6 +164,17 @@ pub(crate) fn half_sine(angle: &Rational, balls: Balls) -> Result<Ball, Failure>
         return Err(Failure::NotSwinging);
     }
     Ok(balls.sin(&balls.mul_power_of_two(&angle, -1)))
+}
+
+/// An equation with the values of the small parameter and of others.
+pub(crate) fn valued(
+    equation: &Expression,
+    small: &str,
+    values: &BTreeMap<String, Rational>,
+) -> Expression {
+    let order = values.get(small).cloned().map(Expression::Number);
+    let value = |e: &Expression| order.clone().filter(|_| *e == Expression::Small);
+    equation.substitute(&value).with_values(values)
 }
 
 /// The equations of a problem, the one in time where there is one.

@@ -2,7 +2,7 @@
 //! z'' + c q sin z = 0, and u = sin(z/2) obeys u'' = -c q ((1 + k^2) u - 2 u^3), k = sin(z(0)/2)
 //! ([`Field::pendulum`]).
 
-use crate::read::half_sine;
+use crate::read::{half_sine, valued};
 use crate::{Failure, Field, Kind, Start};
 use lindstedt_equation::{Expression, Function, Operations};
 use lindstedt_number::ball::{Ball, Balls};
@@ -42,12 +42,7 @@ impl Sine {
         small: &str,
         values: &BTreeMap<String, Rational>,
     ) -> Option<Self> {
-        let value = |e: &Expression| match e {
-            Expression::Small => values.get(small).cloned().map(Expression::Number),
-            Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
-            _ => None,
-        };
-        let equation = equation.substitute(&value).canonical().acceleration_alone().ok()?;
+        let equation = valued(equation, small, values).canonical().acceleration_alone().ok()?;
         let rest = equation
             .substitute(&|e| (*e == Expression::ACCELERATION).then(|| Expression::integer(0)));
         let mut sum: BTreeMap<(i32, Option<Rational>), Rational> = BTreeMap::new();

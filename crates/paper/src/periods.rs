@@ -1,5 +1,7 @@
 //! Periods and forces by routes that share nothing with the expansions.
 
+use lindstedt::unstable::evaluation::closed::agm;
+use lindstedt_melnikov::hyperbolic::gamma;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Integer, Rational};
@@ -15,8 +17,8 @@ pub(super) fn power_law_period(n: &Rational, balls: Balls) -> Option<Ball> {
     }
     let next = Rational::from(n + 1u32);
     let shift = Rational::from(next.recip_ref());
-    let above = gamma(&Rational::from(&shift + 1u32), balls)?;
-    let below = gamma(&(shift + Rational::from((1, 2))), balls)?;
+    let above = gamma(balls, &Rational::from(&shift + 1u32))?;
+    let below = gamma(balls, &(shift + Rational::from((1, 2))))?;
     let root = balls.sqrt(&balls.mul_rational(&balls.pi(), &(next / 2u32)))?;
     balls.div(&balls.mul_i64(&balls.mul(&root, &above), 4), &below)
 }
@@ -35,35 +37,10 @@ pub(super) fn frequency_squared_slope(balls: Balls) -> Option<Ball> {
     Some(balls.mul_power_of_two(&difference, i32::try_from(shift).ok()? - 1))
 }
 
-/// Gamma(q) for 1/2 <= q <= 2: MPFR rounds correctly; Gamma is convex, so there |Gamma'| is at
-/// most max(|Gamma'(1/2)|, Gamma'(2)) < 4.
-fn gamma(q: &Rational, balls: Balls) -> Option<Ball> {
-    if *q < Rational::from((1, 2)) || *q > 2 {
-        return None;
-    }
-    let bits = balls.bits();
-    let value = Float::with_val(bits, q).gamma();
-    // The argument is off by less than 2^(1 - bits), the value by as much again.
-    let error = Float::with_val(53, 10) >> (bits - 1);
-    Some(balls.from_parts(&value, &error))
-}
-
-/// The arithmetic-geometric mean of 1 and b, 0 < b < 1: it lies between the two means at every
-/// step, and their distance is squared each time.
-fn arithmetic_geometric_mean(b: &Ball, balls: Balls) -> Option<Ball> {
-    let (mut a, mut b) = (balls.one(), b.clone());
-    for _ in 0..balls.bits().ilog2() + 6 {
-        let mean = balls.mul_power_of_two(&balls.add(&a, &b), -1);
-        b = balls.sqrt(&balls.mul(&a, &b))?;
-        a = mean;
-    }
-    Some(balls.hull(&a, &b))
-}
-
 /// The exact period of the pendulum with amplitude a: T = 4 K(sin(a/2)) = 2 pi/agm(1, cos(a/2)).
 pub(super) fn pendulum_period(amplitude: &Rational, balls: Balls) -> Option<Ball> {
     let half = balls.from_rational(&Rational::from(amplitude / 2u32));
-    let mean = arithmetic_geometric_mean(&balls.cos(&half), balls)?;
+    let mean = agm(balls, &balls.one(), &balls.cos(&half))?;
     balls.div(&balls.mul_i64(&balls.pi(), 2), &mean)
 }
 
@@ -88,7 +65,7 @@ pub(super) fn pendulum_period_by_series(amplitude: &Rational, balls: Balls) -> O
 /// T = 2 pi/agm(1, 1/sqrt 2).
 pub(super) fn cubic_period(balls: Balls) -> Option<Ball> {
     let root = balls.sqrt(&balls.from_rational(&Rational::from((1, 2))))?;
-    let mean = arithmetic_geometric_mean(&root, balls)?;
+    let mean = agm(balls, &balls.one(), &root)?;
     balls.div(&balls.mul_i64(&balls.pi(), 2), &mean)
 }
 

@@ -12,6 +12,7 @@ use lindstedt_melnikov::{
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
 use lindstedt_problems::stick_slip as card;
+use lindstedt_series::univariate;
 use lindstedt_simulate::{Model, Parameters, Quantity};
 use rug::{Complete, Rational};
 
@@ -54,17 +55,12 @@ fn sign(x: &Rational) -> Rational {
     })
 }
 
-/// sum c_k x^k.
-fn polynomial(coefficients: &[Rational], x: &Rational) -> Rational {
-    coefficients.iter().rev().fold(Rational::new(), |sum, c| sum * x + c)
-}
-
 /// T(w) of the engine's law, where its coefficients are rational.
 fn law(law: &PolynomialFriction, w: &Rational) -> Option<Rational> {
     let coefficients: Option<Vec<Rational>> =
         law.coefficients.iter().map(|c| c.as_rational().cloned()).collect();
     let dry = law.dry.as_rational()? * sign(w);
-    Some(dry + polynomial(&coefficients?, w))
+    Some(dry + univariate::value(&coefficients?, w))
 }
 
 /// The engine's force on the mass: coefficient k at index k.
@@ -107,8 +103,8 @@ fn reduction(points: &mut Points, orbit: &OrbitDescription) -> Option<Reduction>
     let theta_per_mass = per_mass(&theta);
     let printed = Rational::from(&a * &x) - &b * cube(&x)
         + &eps * (Rational::from(&gamma * &cosine) - &theta_per_mass);
-    let engine =
-        polynomial(&force(orbit, &a, &b)?, &x) + &eps * (Rational::from(&gamma * &cosine) - &t);
+    let engine = univariate::value(&force(orbit, &a, &b)?, &x)
+        + &eps * (Rational::from(&gamma * &cosine) - &t);
     Some(Reduction {
         equation: eighteen == engine,
         friction: t == theta_per_mass,
@@ -139,18 +135,19 @@ fn flow(points: &mut Points, orbit: &OrbitDescription) -> Option<[bool; 2]> {
     let a = &b * s.square_ref().complete();
     let [x, v] = std::array::from_fn(|_| points.signed());
     let force = force(orbit, &a, &b)?;
-    let acceleration = polynomial(&force, &x);
+    let acceleration = univariate::value(&force, &x);
     let [by_x, _] = derivatives(|h| hamiltonian(&a, &b, &Rational::from(&x + h), &v));
     let [by_v, _] = derivatives(|h| hamiltonian(&a, &b, &x, &Rational::from(&v + h)));
     let conserved = (by_x * &v + by_v * acceleration).is_zero();
     // Where v = 0 and the force vanishes; its derivative is the square of the eigenvalues.
     let zero = Rational::new();
-    let slope =
-        |x: &Rational| derivatives(|h| polynomial(&force, &Rational::from(x + h)))[0].clone();
+    let slope = |x: &Rational| {
+        derivatives(|h| univariate::value(&force, &Rational::from(x + h)))[0].clone()
+    };
     let curvature = |x: &Rational| {
         derivatives(|h| hamiltonian(&a, &b, &Rational::from(x + h), &zero))[1].clone()
     };
-    let rest = |x: &Rational| polynomial(&force, x).is_zero();
+    let rest = |x: &Rational| univariate::value(&force, x).is_zero();
     let minus = Rational::from(-&s);
     let centre = |x: &Rational| rest(x) && slope(x) < 0 && curvature(x) > 0;
     let saddle = rest(&zero) && slope(&zero) > 0 && curvature(&zero) < 0;

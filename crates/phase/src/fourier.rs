@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn first_coefficient_of_the_power_law() {
-        // alpha_1 = mean of 2 cos^2 t ln cos^2 t = 1 - 2 mu_1 = 1 - 2 ln 2 (small-delta.md).
+        // alpha_1 = mean of 2 cos^2 t ln cos^2 t = 1 - 2 mu_1 = 1 - 2 ln 2.
         let ring = PolynomialRing::default();
         let mean = &power_log_harmonics(&ring, 2, 1, 0)[0];
         let twice_mu = ring.scale(&ring.symbol(Symbol::Moment(1)), &Rational::from(2));

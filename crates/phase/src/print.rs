@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(a.print(&ln_cos, "t", Style::Latex), r"(\ln 2)\cos t");
     }
 
-    /// x_2 of the power law as in small-delta.md, section 2.
+    /// x_2 of the power law.
     #[test]
     fn second_correction_of_the_power_law() {
         let a = Lobachevsky::new(PolynomialRing::default());

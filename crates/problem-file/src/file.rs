@@ -102,14 +102,10 @@ pub(crate) fn misplaced(
 /// Whether a term is c x (x^2)^small with c free of x, so that x = a y makes it a (a^2)^small times as
 /// large.
 fn is_power_law(term: &Expression) -> bool {
-    let factors = match term {
-        Expression::Product(list) => list.clone(),
-        other => vec![other.clone()],
-    };
     let x = Expression::DISPLACEMENT;
     let power = x.clone().pow(2).pow(Expression::Small).canonical();
     let moving = |e: &&Expression| e.nodes().any(|e| matches!(e, Expression::Unknown(_)));
-    let mut moving: Vec<&Expression> = factors.iter().filter(moving).collect();
+    let mut moving: Vec<&Expression> = term.factors().iter().filter(moving).collect();
     moving.sort_by_key(|e| **e != x);
     moving == [&x, &power]
 }

@@ -4,11 +4,12 @@ use crate::bound::PI;
 use crate::factors::{Factors, factors, is_wave};
 use crate::in_pi::InPi;
 use crate::refusal::Why;
-use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_algebra::common_measure;
+use lindstedt_equation::monomials::{self, Monomial, Monomials};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_melnikov::{Forcing, Harmonic};
 use lindstedt_number::Exact;
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::cmp::Ordering;
 
 /// Harmonics k omega up to this k.
@@ -75,18 +76,9 @@ pub(crate) fn harmonic_atom<'a>(
 /// (terms in t, terms without) of the argument of a sine or cosine of omega t + phase.
 fn angle(e: &Expression) -> Option<(Monomials, Monomials)> {
     let Expression::Function(Function::Sin | Function::Cos, argument) = e else { return None };
-    let all = expand(argument)?;
-    let (mut frequency, mut phase) = (Monomials::default(), Monomials::default());
-    for (m, q) in all.terms {
-        (m.order == 0 && m.x == 0 && m.velocity == 0).then_some(())?;
-        let part = match m.atoms.iter().next() {
-            None => &mut phase,
-            Some((key, 1)) if key == "t" && m.atoms.len() == 1 => &mut frequency,
-            Some(_) => return None,
-        };
-        part.terms.insert(m, q);
-    }
-    (!frequency.terms.is_empty()).then_some((frequency, phase))
+    let (rate, start) = monomials::angle(argument)?;
+    let strong = rate.terms.keys().chain(start.terms.keys()).all(|m| m.order == 0);
+    strong.then_some((rate, start))
 }
 
 fn sum(part: &Monomials) -> Option<InPi> {
@@ -189,14 +181,11 @@ fn in_harmonics(group: &[&Term], unit: &Exact) -> Result<(Exact, Vec<Harmonic>),
     let first = group.first().ok_or(Why::NotHarmonic)?;
     let ratios: Option<Vec<Rational>> = group.iter().map(|t| t.omega.ratio(&first.omega)).collect();
     let ratios = ratios.ok_or(Why::NotHarmonic)?;
-    let common = ratios.iter().fold(Integer::from(1), |c, r| c.lcm(r.denom()));
-    let whole: Vec<Integer> =
-        ratios.iter().map(|r| Integer::from(&common / r.denom()) * r.numer()).collect();
-    let divisor = whole.iter().fold(Integer::new(), |d, k| d.gcd(k));
-    let omega = first.omega.times(&Rational::from((divisor.clone(), common)));
+    let measure = ratios.iter().fold(Rational::new(), |q, ratio| common_measure(&q, ratio));
+    let omega = first.omega.times(&measure);
     let mut harmonics = Vec::new();
-    for (term, k) in group.iter().zip(whole) {
-        let number = (k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
+    for (term, ratio) in group.iter().zip(ratios) {
+        let number = (ratio / &measure).numer().to_u32().filter(|k| *k <= LARGEST_HARMONIC);
         let number = number.ok_or(Why::NotHarmonic)?;
         let size = term.size.ratio(unit).ok_or(Why::Irrational)?;
         // The phase of a force alone is the origin of time.

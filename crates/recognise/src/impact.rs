@@ -4,7 +4,7 @@
 use crate::bound::{bind, missing, multiply_out, named, of_value, rest};
 use crate::in_pi::InPi;
 use crate::refusal::{Refusal, Why};
-use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::monomials::{Monomial, Monomials, angle};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Crossing, Expression, Function, Problem, Synchronous, Unknown};
 use lindstedt_impact::parameters::{Branch, ExactParameters};
@@ -291,23 +291,15 @@ fn shape(all: &Monomials, m: &Monomial) -> Result<Shape, Why> {
 /// Whether the argument of a harmonic force is omega t + phase: the phase moves the clock only.
 #[must_use]
 pub fn linear_in_time(argument: &Expression) -> bool {
-    expand(argument).is_some_and(|all| {
-        let time = |m: &Monomial| m.atoms.get("t") == Some(&1) && m.atoms.len() == 1;
-        let plain = |m: &Monomial| m.x == 0 && m.velocity == 0 && m.order == 0;
-        let fits = |m: &Monomial| plain(m) && (m.atoms.is_empty() || time(m));
-        all.terms.keys().all(fits) && all.terms.keys().any(time)
+    angle(argument).is_some_and(|(rate, start)| {
+        rate.terms.keys().chain(start.terms.keys()).all(|m| m.order == 0)
     })
 }
 
 /// |omega| of omega t + phase; nothing for one that is neither rational nor a multiple of pi.
 fn angular_frequency(argument: &Expression) -> Option<InPi> {
     let mut omega = InPi::default();
-    for (m, q) in expand(argument)?.terms {
-        if !m.atoms.is_empty() {
-            let bare = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
-            omega.add(&bare, &q)?;
-        }
-    }
+    angle(argument)?.0.terms.iter().try_for_each(|(m, q)| omega.add(m, q))?;
     let value = omega.value()?;
     Some(if value.sign().is_lt() { omega.neg() } else { omega })
 }

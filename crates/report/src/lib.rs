@@ -28,6 +28,6 @@ pub use document::{Block, Document, Part};
 pub use figure::{Figure, FigureError};
 pub use format::{Format, harmless, standalone};
 pub use mathml::{MathError, mathml};
-pub use present::{Present, json, json_line};
+pub use present::{Pen, Present, json, json_line};
 pub use table::Table;
 pub use text::{Formula, Span, Text};

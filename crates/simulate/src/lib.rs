@@ -98,7 +98,7 @@ pub use quantity::{Parameters, Quantity};
 pub use onset::TangencyLine;
 pub use outcome::Outcome;
 pub use report::{Event, EventKind, Report, Segment, Work};
-pub use saddle::{Saddle, saddle, unstable_manifold};
+pub use saddle::{Saddle, saddle};
 pub use system::{Model, System};
 pub use tangency::{Homoclinic, Loop, Return, Tangency};
 pub use trajectory::Trajectory;

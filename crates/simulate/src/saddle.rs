@@ -4,7 +4,6 @@ use crate::error::SimulateError;
 use crate::integrator::real::Doubles;
 use crate::integrator::{Settings, Tick};
 use crate::linear::monodromy;
-use crate::poincare::{PoincareMap, Section};
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 
@@ -177,37 +176,4 @@ fn pair<T: Clone>(slice: &[T]) -> Result<[T; 2], SimulateError> {
 fn square(matrix: &[Vec<f64>]) -> Result<[[f64; 2]; 2], SimulateError> {
     let [first, second] = pair(matrix)?;
     Ok([pair(&first)?, pair(&second)?])
-}
-
-/// Points of one half of the unstable manifold at t = 0 modulo the period, in order along it:
-/// saddle + `amount` multiplier^sigma (unstable direction), 0 <= sigma < 1 in `count` steps,
-/// carried forward by 0, 1, ..., `periods` periods. A negative amount (of small size, 1e-6 say)
-/// gives the other half. The points are not refined where the manifold stretches.
-///
-/// `tick` is asked at every step whether to go on ([`SimulateError::Stopped`]). Cost: count periods
-/// integrations.
-pub fn unstable_manifold(
-    system: &System<Doubles>,
-    saddle: &Saddle,
-    amount: f64,
-    (count, periods): (u32, u32),
-    settings: Settings,
-    tick: &Tick<'_>,
-) -> Result<Vec<[f64; 2]>, SimulateError> {
-    let mut rows = vec![Vec::new(); periods as usize + 1];
-    for k in 0..count {
-        let sigma = f64::from(k) / f64::from(count);
-        let start = saddle.unstable(amount * saddle.multipliers[0].powf(sigma));
-        let section = Section::Period(saddle.period);
-        let mut map = PoincareMap::new(system, &0.0, &start, section, settings)?;
-        for (index, row) in rows.iter_mut().enumerate() {
-            let state = if index == 0 {
-                start
-            } else {
-                map.next_point(tick)?.map_or(Ok(start), |point| pair(&point.state))?
-            };
-            row.push(state);
-        }
-    }
-    Ok(rows.concat())
 }

@@ -1,6 +1,7 @@
 //! What nothing beats in time and error.
 
 use lindstedt::trade::{Method, Row, most_accurate, pareto, recommend, recommend_for_many};
+use lindstedt_tests::Random;
 
 fn rows(points: &[(f64, f64)]) -> Vec<Row> {
     let row = |&(seconds, error): &(f64, f64)| Row {
@@ -31,11 +32,8 @@ fn the_front_is_what_nothing_beats() {
 /// The definition by all pairs, on pseudo-random points.
 #[test]
 fn the_front_by_its_definition() {
-    let mut state = 1u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        f64::from((state >> 33) as u32 % 40)
-    };
+    let mut random = Random(1);
+    let mut next = || random.below(40) as f64;
     for _ in 0..50 {
         let points: Vec<(f64, f64)> = (0..30).map(|_| (next(), next())).collect();
         let front = pareto(&rows(&points));

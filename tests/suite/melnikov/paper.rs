@@ -2,7 +2,7 @@
 
 use lindstedt_paper::{Verdict, printed_forms};
 
-/// Independent values of `mathematics/stick-slip.md`, section 2 (quadrature to 26 digits there).
+/// Independent values, by quadrature to 26 digits.
 #[test]
 fn printed_forms_and_their_values() {
     let list = printed_forms().unwrap();

@@ -1,7 +1,7 @@
 //! `lindstedt paper`: the paper, formula by formula, as a report.
 
 use crate::arguments::Format;
-use crate::failure::{Failure, NO_ANSWER};
+use crate::failure::Failure;
 use crate::output::trouble;
 use crate::session::Session;
 use crate::terminal::warn;
@@ -36,14 +36,8 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
     let paper = read(depth, &session.watch.stop(), &mut observer)?;
     session.done();
     let seconds = session.watch.elapsed().as_secs_f64();
-    let unwritten = |error: page::PageError| Failure {
-        exit: NO_ANSWER,
-        code: "figure",
-        message: error.to_string(),
-        hint: String::new(),
-    };
     if let Some(directory) = session.out() {
-        let files = page::files(&paper, seconds).map_err(unwritten)?;
+        let files = page::files(&paper, seconds).map_err(Failure::figure)?;
         session.watch.writing();
         for (name, content) in files {
             output::write_file(&directory.join(name), &content)?;
@@ -56,7 +50,7 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
             Format::Text => page::write(&paper, Written::Text),
             Format::Markdown => page::write(&paper, Written::Markdown),
             Format::Latex => page::write(&paper, Written::Latex),
-            Format::Json => page::json(&paper, seconds).map_err(unwritten)?,
+            Format::Json => page::json(&paper, seconds).map_err(Failure::figure)?,
         };
         session.watch.writing();
         output::write(None, &report)?;

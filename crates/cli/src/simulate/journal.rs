@@ -4,7 +4,7 @@
 //! Lines are added with one write each, so whatever ends the program leaves whole lines but for the last.
 //! What is not whole, or not what was written, is computed again, with the same numbers.
 
-use crate::failure::{FILE, Failure};
+use crate::failure::Failure;
 use crate::output::{open_to_append, trouble, write_file};
 use crate::terminal::warn;
 use lindstedt::motion::{Column, Journal};
@@ -94,12 +94,8 @@ impl<'a> Kept<'a> {
         };
         let first = format!("# lindstedt bifurcation 5: {}\n", self.identity);
         if !text.is_empty() && !text.starts_with(&first) {
-            return Err(Failure {
-                exit: FILE,
-                code: "file",
-                message: format!("{} belongs to another sweep", self.path.display()),
-                hint: "give another file to --resume".into(),
-            });
+            let message = format!("{} belongs to another sweep", self.path.display());
+            return Err(Failure::file(message, "give another file to --resume"));
         }
         let found = self.read(&text, 2);
         if !found.damaged.is_empty() {

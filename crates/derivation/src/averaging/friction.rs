@@ -74,7 +74,7 @@ impl HalfTurnProblem {
     ) -> Result<Self, Error> {
         let law = on_half_turn(problem, values)?;
         let unsupported = |e: &Expression| {
-            let term = e.print(&problem.small, lindstedt_equation::print::Style::Text);
+            let term = e.print(&problem.small, Style::Text);
             Error::from(ExpandError::UnsupportedTerm { term })
         };
         let all = expand(&law).ok_or_else(|| unsupported(&law))?;

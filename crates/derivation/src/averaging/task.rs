@@ -48,9 +48,6 @@ impl<A: FunctionAlgebra> Binding<A> for Bound<'_, A::Element> {
     fn parameter(&self, name: &str) -> Option<A::Element> {
         (self.0)(&Expression::parameter(name))
     }
-    fn formal(&self, _: &str, _: usize) -> Option<A::Element> {
-        None
-    }
     fn power(&self, power: &Expression) -> Option<A::Element> {
         (self.0)(power)
     }

@@ -68,7 +68,4 @@ impl Binding<Rationals> for ExactValues<'_> {
     fn parameter(&self, name: &str) -> Option<Rational> {
         self.0.parameters.get(name)?.as_rational().cloned()
     }
-    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
-        None
-    }
 }

@@ -8,15 +8,15 @@
 //! coefficients that grow like 2^k with alternating signs. Where theta is a number of quarters of a turn they are numbers.
 
 use super::forces::{Angles as Named, named, quarters, wave_names};
-use super::{System, Terms, Unit};
+use super::{System, Terms, Unit, collected};
 use crate::averaging::constant;
-use lindstedt_algebra::Ring;
+use lindstedt_algebra::{Ring, common_measure};
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::{Monomials, expand};
 use lindstedt_expand::{Excitation, ExpandError};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::{Exact, common_measure};
 use lindstedt_phase::amplitudes::scalars::Scalars;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes, Late, Rates};
 use rug::Rational;
@@ -258,8 +258,7 @@ impl Angles {
                 }
             }
         }
-        let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
-        *terms = kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect();
+        *terms = collected(sum);
     }
 }
 

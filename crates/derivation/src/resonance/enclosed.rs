@@ -7,7 +7,7 @@
 use super::algebraic::{Enclosed as Modes, middles};
 use super::flow::{Job, Run};
 use super::print::is_short;
-use super::{Enclosed, ResonanceError, SlowFlow, Terms};
+use super::{Enclosed, ResonanceError, SlowFlow, Terms, collected};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_equation::Expression;
@@ -172,7 +172,5 @@ fn read(algebra: &Amplitudes<Over<BallRing>>, f: &Element, radius: &Cell<f64>) -
         radius.set(radius.get().max(upward(&size)));
         value
     };
-    let all = algebra.terms_as(f, &part).into_iter();
-    let kept = all.filter(|(_, c)| !c.iter().all(Rational::is_zero));
-    kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+    collected(algebra.terms_as(f, &part))
 }

@@ -36,9 +36,6 @@ impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
         let other = || Some(self.algebra.constant((self.other)(name)?));
         self.algebra.symbol(name).or_else(other)
     }
-    fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
-        None
-    }
     fn power(&self, e: &Expression) -> Option<AmplitudeElement<S::Element>> {
         constant(self.algebra, e, &|name| self.parameter(name))
     }

@@ -4,10 +4,10 @@
 
 use super::unit::Unit;
 use super::{Names, ResonanceError};
-use lindstedt_equation::monomials::{Monomial, expand};
+use lindstedt_algebra::common_measure;
+use lindstedt_equation::monomials::{self, expand};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
-use lindstedt_number::common_measure;
 use rug::{Integer, Rational};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -63,13 +63,9 @@ pub(super) fn is_wave(e: &Expression) -> bool {
 /// l and m of cos(m eta_l) or sin(m eta_l).
 pub(super) fn harmonic(wave: &Expression) -> Option<(Function, usize, i32)> {
     let Expression::Function(function, angle) = wave else { return None };
-    let (factors, one) = match &**angle {
-        Expression::Product(factors) => (&factors[..], Rational::from(1)),
-        single => (std::slice::from_ref(single), Rational::from(1)),
-    };
     let number = |m, e: &Expression| m * e.as_number().unwrap_or_else(|| 1.into());
-    let m = factors.iter().fold(one, number);
-    let phase = factors.iter().find_map(|e| match e {
+    let m = angle.factors().iter().fold(Rational::from(1), number);
+    let phase = angle.factors().iter().find_map(|e| match e {
         Expression::Parameter(name) => name.strip_prefix(PHASE)?.parse().ok(),
         _ => None,
     })?;
@@ -89,15 +85,14 @@ pub(super) fn with_phases(
 
 /// The parts of an angle rate * t + start; nothing for an angle of another form.
 fn parts(angle: &Expression) -> Option<Angle> {
-    let all = expand(angle)?;
-    let still = |m: &Monomial| m.x == 0 && m.velocity == 0;
-    let in_time = |m: &Monomial| still(m) && m.atoms.len() == 1 && m.atoms.get("t") == Some(&1);
-    let at_start = |m: &Monomial| still(m) && m.atoms.is_empty() && m.order == 0;
-    let highest = all.terms.keys().filter(|m| in_time(m)).map(|m| m.order).max()?;
-    let order = |n| all.coefficient(|m| m.order == n && in_time(m));
-    let known = all.terms.keys().all(|m| in_time(m) || at_start(m));
-    let start = all.coefficient(at_start);
-    known.then(|| Angle { rate: (0..=highest).map(order).collect(), start })
+    let (rate, start) = monomials::angle(angle)?;
+    let highest = rate.terms.keys().map(|m| m.order).max()?;
+    let order = |n| rate.coefficient(|m| m.order == n);
+    let known = start.terms.keys().all(|m| m.order == 0);
+    known.then(|| Angle {
+        rate: (0..=highest).map(order).collect(),
+        start: start.coefficient(|_| true),
+    })
 }
 
 /// The rates at order zero of all angles: what must have a value.

@@ -364,6 +364,12 @@ impl Room {
     }
 }
 
+/// The terms of a sum that do not vanish.
+fn collected(sum: impl IntoIterator<Item = (Vec<i32>, [Rational; 2])>) -> Terms {
+    let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
+    kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+}
+
 fn refuse_near_miss(nearest: &[Nearest], forces: usize) -> Result<(), ResonanceError> {
     let least = Rational::from(NEAR_MISS);
     match nearest.iter().find(|near| *near.size.as_abs() < least) {
@@ -389,10 +395,7 @@ fn sum_of_harmonics(harmonic: &[i32], forces: usize) -> String {
         factors: vec![name(j)],
     };
     let terms = harmonic.iter().enumerate().filter(|(_, k)| **k != 0).map(term);
-    lindstedt_coeff::print::print_sum(
-        &terms.collect::<Vec<_>>(),
-        lindstedt_coeff::print::Style::Text,
-    )
+    lindstedt_coeff::print::print_sum(&terms.collect::<Vec<_>>(), Style::Text)
 }
 
 /// The names of the user.

@@ -18,7 +18,7 @@ use super::print::print_powers;
 use super::system::{Prepared, refuse_delays, separated, symbols};
 use super::unit::Unit;
 use super::{
-    Element, Enclosed, Names, ResonanceError, SlowFlow, Terms, refuse_near_miss,
+    Element, Enclosed, Names, ResonanceError, SlowFlow, Terms, collected, refuse_near_miss,
     slow_flow_undetuned,
 };
 use crate::averaging::AveragingSettings;
@@ -252,8 +252,7 @@ fn unknown(row: &[Rational], lists: &[Vec<Terms>]) -> Vec<Terms> {
                 entry[1] += Rational::from(p * &term.im);
             }
         }
-        let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
-        kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+        collected(sum)
     };
     (0..lists.iter().map(Vec::len).max().unwrap_or(0)).map(order).collect()
 }
@@ -378,8 +377,7 @@ fn squared(rates: &[[InAmplitude; 2]], r: f64) -> (Vec<Terms>, f64) {
 }
 
 fn listed(sum: InAmplitude) -> Terms {
-    let terms = sum.into_iter().filter(|(_, c)| !c.is_zero());
-    terms.map(|(exponents, re)| AmplitudeTerm { exponents, re, im: Rational::new() }).collect()
+    collected(sum.into_iter().map(|(exponents, re)| (exponents, [re, Rational::new()])))
 }
 
 impl NormalMode {

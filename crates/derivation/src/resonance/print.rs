@@ -221,10 +221,6 @@ impl SlowFlow {
     pub fn print_start(&self, l: usize, style: Style) -> Option<String> {
         let start = &self.system.forces.get(l)?.start;
         let zero = start.as_number().is_some_and(|q| q.is_zero());
-        let style = match style {
-            Style::Text => lindstedt_equation::print::Style::Text,
-            Style::Latex => lindstedt_equation::print::Style::Latex,
-        };
         (!zero).then(|| start.print(&self.problem.small, style))
     }
 

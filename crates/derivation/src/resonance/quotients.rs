@@ -1,7 +1,7 @@
 //! Slow flows over quotients of polynomials in independent frequencies: those of forces that have no value.
 
 use super::flow::Job;
-use super::{SlowFlow, Terms};
+use super::{SlowFlow, Terms, collected};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_coeff::parameters::{LinearForm, ParameterField, ParameterFraction};
@@ -10,7 +10,7 @@ use lindstedt_coeff::print::{Style, Term, print_sum};
 use lindstedt_equation::Expression;
 use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::scalars::Over;
-use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes};
+use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes};
 use rug::{Integer, Rational};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -107,7 +107,6 @@ impl<'a> Quotients<'a> {
                 }
             }
         }
-        let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
-        kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+        collected(sum)
     }
 }

@@ -20,12 +20,11 @@ use crate::error::DerivationError as Error;
 use crate::limits::refuse_taken;
 use crate::values::value;
 use crate::work::Progress;
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring, common_measure};
 use lindstedt_coeff::print::{Style, Term, print_sum};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::resonance::{check_flow, periodic, resonant};
 use lindstedt_expand::{Binding, ExpandError, OrderWork};
-use lindstedt_number::common_measure;
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
 use rug::Rational;
@@ -123,9 +122,6 @@ impl Binding<Amplitudes<Integers>> for Seeking<'_> {
         let [wave, other] = algebra.wave(l, m.checked_mul(self.0.step)?)?;
         let (other, sin) = if sine { (wave, sin) } else { (other, -sin) };
         Some(algebra.add(&algebra.scale(&own, &cos), &algebra.scale(&other, &sin)))
-    }
-    fn formal(&self, name: &str, n: usize) -> Option<Element> {
-        self.0.formal(name, n)
     }
     fn is_sought(&self, name: &str) -> bool {
         name == self.1

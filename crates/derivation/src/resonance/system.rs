@@ -191,7 +191,8 @@ impl Prepared {
         for (name, value) in given.filter(|(name, _)| mentioned.contains(*name)) {
             bound.insert(name.clone(), rational(name, value)?);
         }
-        let equations = put_in(&equations, &bound);
+        let equations: Vec<_> =
+            equations.iter().map(|e| e.with_values(&bound).canonical()).collect();
         // What the frequencies depend on has its value, too.
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let entries = parts.iter().flat_map(|p| p.mass.values().chain(p.stiffness.values()));
@@ -206,7 +207,8 @@ impl Prepared {
                 None => independent.push(name.clone()),
             }
         }
-        let equations = put_in(&equations, &bound);
+        let equations: Vec<_> =
+            equations.iter().map(|e| e.with_values(&bound).canonical()).collect();
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let entries = parts.iter().flat_map(|p| p.stiffness.values());
         let unit = Unit::symbol(parts.iter().flat_map(|p| p.mass.values()), entries)?;
@@ -463,14 +465,6 @@ pub(super) fn refuse_delays(
         None => Ok(()),
         Some(e) => Err(ResonanceError::Delay { term: names.shown(e) }),
     }
-}
-
-fn put_in(equations: &[Expression], values: &BTreeMap<String, Rational>) -> Vec<Expression> {
-    let change = |e: &Expression| match e {
-        Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
-        _ => None,
-    };
-    equations.iter().map(|e| e.substitute(&change).canonical()).collect()
 }
 
 /// q_j'' + the rest of equation j, with x = P q in it; irrational numbers by their names.

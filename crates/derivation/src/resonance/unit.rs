@@ -6,7 +6,7 @@
 //! multiples, and the residual is that of the equations as they are written. Of u = sqrt(d) the square is put in at the end: c u^n becomes
 //! c d^(n/2) or c d^((n - 1)/2) sqrt(d).
 
-use super::{ResonanceError, SlowFlow, Terms};
+use super::{ResonanceError, SlowFlow, Terms, collected};
 use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomial, expand};
@@ -222,6 +222,5 @@ fn reduced(terms: Terms, place: usize, square: &Rational) -> Terms {
         let entry = sum.entry(exponents).or_default();
         entry.iter_mut().zip([re, im]).for_each(|(sum, part)| *sum += part * &factor);
     }
-    let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
-    kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+    collected(sum)
 }

@@ -43,9 +43,8 @@ impl FrequencyBound {
         reaction: Option<&Rational>,
     ) -> Option<Self> {
         let inverse = amplitude.clone().recip();
-        let mut numbers = bound.numbers();
-        numbers.extend([amplitude, &inverse].into_iter().chain(reaction).cloned());
-        bound.rebuild(&numbers);
+        let own = [amplitude, &inverse].into_iter().chain(reaction);
+        bound.rebuild(&own.cloned().collect::<Vec<_>>());
         let number = |q: &Rational| bound.generators.number(q);
         let (mut leading, inverse_amplitude) = (number(amplitude)?, number(&inverse)?);
         let reaction = match reaction {
@@ -152,9 +151,6 @@ mod tests {
 
     impl Binding<Rationals> for NoNames {
         fn parameter(&self, _: &str) -> Option<Rational> {
-            None
-        }
-        fn formal(&self, _: &str, _: usize) -> Option<Rational> {
             None
         }
     }

@@ -108,7 +108,6 @@ impl<E> SlowFlow<E> {
 /// struct Symbols<'a>(&'a Amplitudes<Integers>);
 /// impl Binding<Amplitudes<Integers>> for Symbols<'_> {
 ///     fn parameter(&self, name: &str) -> Option<AmplitudeElement<<Integers as Scalars>::Element>> { self.0.symbol(name) }
-///     fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<<Integers as Scalars>::Element>> { None }
 /// }
 /// let one = Rational::from(1);
 /// let algebra = Amplitudes::new(Integers, &[one.clone()], &one, &["F"]).ok_or("frequencies")?;

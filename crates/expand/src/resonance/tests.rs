@@ -22,9 +22,6 @@ impl Binding<Algebra> for Named<'_> {
         let field = field();
         Some(self.0.number(&field.parameter(field.position(name)?)))
     }
-    fn formal(&self, _: &str, _: usize) -> Option<Element> {
-        None
-    }
 }
 
 fn field() -> ParameterField {

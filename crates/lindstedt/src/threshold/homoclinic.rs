@@ -103,11 +103,9 @@ impl Oscillator {
             frequency: orbit.frequency.into_iter().map(exact).collect(),
             residual: HomoclinicResidual { checked_orders: done + 1, zero: true },
         };
-        let mut remarks = self.remarks().to_vec();
-        let standing = self.standing(done < order, done, true, &mut remarks);
         let at = values.into_iter().filter(|(other, _)| other != name);
-        let header = self.header(at, Some(done), "exact", start);
-        Ok(Answer { header, value, standing, remarks })
+        let (orders, remarks) = ((order, done, true), self.remarks().to_vec());
+        Ok(self.finished(at, orders, "exact", remarks, start).map(|()| value))
     }
 
     /// That a parameter that is sought occurs, and has no value.

@@ -1,7 +1,7 @@
 //! Integrals along the orbit against the trapezoidal rule over time, which converges geometrically for them; the orbits are
 //! written here once more.
 
-use crate::hyperbolic::line_fourier_ball;
+use crate::hyperbolic::line_fourier;
 use crate::{
     Branch, Damping, Factor, Forcing, Friction, Harmonic, PolynomialFriction, Potential, System,
 };
@@ -151,7 +151,7 @@ fn one_moment_of_a_polynomial_serves_all_forces() {
         assert!(c.is_exact() && c.contains_zero());
         let root =
             balls().powi(&balls().sqrt(&balls().from_i64(2)).unwrap(), i64::from(n) + 1).unwrap();
-        let form = line_fourier_ball(balls(), n + 1, 0, &w).unwrap();
+        let form = line_fourier(n + 1, 0).unwrap().ball(balls(), &w).unwrap();
         let closed = balls().mul(&balls().mul(&w, &root), &form);
         let closed = balls().div_i64(&closed, i64::from(n) + 1).unwrap();
         assert!(balls().abs(&s).overlaps(&closed) && closed.relative_accuracy_bits() > 90, "{n}");

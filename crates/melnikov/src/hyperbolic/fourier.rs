@@ -56,7 +56,7 @@ impl FourierForm {
         Self { sech: shifted(&self.sech), csch: shifted(&self.csch) }
     }
     /// An enclosure at w: the polynomials by Horner's rule, so the cancellation inside them costs
-    /// bits (never truth); for one J_{p,q} prefer [`line_fourier_ball`].
+    /// bits (never truth).
     #[must_use]
     pub fn ball(&self, balls: Balls, w: &Ball) -> Option<Ball> {
         let horner = |coefficients: &[Rational]| {
@@ -150,42 +150,6 @@ pub fn line_fourier(p: u32, q: u32) -> Option<FourierForm> {
         form = negated;
     }
     Some(form)
-}
-
-/// C_p(w) and J_{p,q}(w) in balls by the three-term recurrence (integer p >= 1, no cancellation
-/// beyond that of the value itself; no polynomial is expanded). `None` for p = 0.
-#[must_use]
-pub fn line_fourier_ball(balls: Balls, p: u32, q: u32, w: &Ball) -> Option<Ball> {
-    if p == 0 {
-        return None;
-    }
-    let start = if p.is_multiple_of(2) { 2 } else { 1 };
-    let seed = if start == 1 { first_kernel(balls, w)? } else { second_kernel(balls, w)? };
-    let square = balls.square(w);
-    let mut value = seed;
-    for n in (start..p).step_by(2) {
-        let n = i64::from(n);
-        let numerator = balls.add(&balls.from_i64(n * n), &square);
-        value = balls.div_i64(&balls.mul(&value, &numerator), n * (n + 1))?;
-    }
-    tanh_recurrence(balls, &Rational::from(p), q, w, value)
-}
-
-/// J_{p,q} from C_p for real p > 0.
-pub(super) fn tanh_recurrence(
-    balls: Balls,
-    p: &Rational,
-    q: u32,
-    w: &Ball,
-    c_p: Ball,
-) -> Option<Ball> {
-    let (mut before, mut value) = (balls.zero(), c_p);
-    for j in 1..=i64::from(q) {
-        let step = balls.sub(&balls.mul(w, &value), &balls.mul_i64(&before, j - 1));
-        let divisor = (p + Rational::from(j - 1)).recip();
-        before = std::mem::replace(&mut value, balls.mul_rational(&step, &divisor));
-    }
-    Some(if (q / 2) % 2 == 1 { balls.neg(&value) } else { value })
 }
 
 impl Hyperbolic {

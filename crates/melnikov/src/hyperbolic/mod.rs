@@ -6,18 +6,15 @@
 //! c in Q, p >= 0 and q in {0, 1}; the relation removes every higher power of tanh, so elements
 //! are canonical and an orbit is checked against its equation of motion exactly.
 
-mod double;
 mod fourier;
+mod gamma;
 mod integral;
-mod moment;
-mod real_power;
+mod pi_polynomial;
 
-pub(crate) use double::FRAC_PI_2_LOW;
-pub use double::{integral_f64, line_fourier_f64, sech_half_pi};
-pub use fourier::{FourierForm, FourierTransform, line_fourier, line_fourier_ball};
+pub use fourier::{FourierForm, FourierTransform, line_fourier};
+pub use gamma::{beta, gamma};
 pub use integral::{LineIntegral, line_integral};
-pub use moment::{PiPolynomial, line_moment};
-pub use real_power::{beta, gamma, line_fourier_real, line_integral_real};
+pub use pi_polynomial::PiPolynomial;
 
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;

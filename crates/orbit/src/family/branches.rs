@@ -1,6 +1,6 @@
 //! All branches of orbits over the values of a parameter that are found from guesses.
 
-use super::family_all;
+use super::family;
 use crate::{Failure, Field, Kind, Proof, Request, Start, guesses_all, prove_all};
 use rug::Rational;
 use std::collections::BTreeSet;
@@ -22,7 +22,7 @@ pub struct Branch {
 /// branch reaches (beyond an equilibrium or a separatrix). There may be more.
 ///
 /// # Errors
-/// The first error of `orbits` where no value has an orbit; those of [`family_all`].
+/// The first error of `orbits` where no value has an orbit; those of [`family`].
 ///
 /// ```
 /// use lindstedt_equation::Expression;
@@ -128,7 +128,7 @@ impl Search<'_> {
         let mut side = |indices: Vec<usize>| -> Result<Vec<Proof>, Failure> {
             let values: Vec<Rational> = indices.iter().map(|i| self.values[*i].clone()).collect();
             let mut proofs = Vec::new();
-            let members = family_all(&values, self.problem, starts, self.request)?;
+            let members = family(&values, self.problem, starts, self.request)?;
             for (i, member) in indices.into_iter().zip(members) {
                 match member.proof {
                     Ok(proof) => proofs.push(proof),

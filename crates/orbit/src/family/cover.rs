@@ -61,7 +61,7 @@ pub struct Cover {
 /// };
 /// let start = Start { frequency: 1.17, cosines: vec![0.0, 1.0], sines: vec![] };
 /// let ends = [(1, 2), (3, 5)].map(rug::Rational::from);
-/// let members = family(&ends, at, &start, &Request::default())?;
+/// let members = family(&ends, at, &[start], &Request::default())?;
 /// let proofs: Vec<_> = members.iter().flat_map(|m| &m.proof).collect();
 /// let between = cover(&ends, [proofs[0], proofs[1]], between, &Request::default());
 /// assert!(between.failure.is_none());

@@ -34,8 +34,8 @@ const FIRST_STEP: (i32, i32) = (1, 8);
 /// Halvings of a step over which Newton's method does not go.
 const MOST_HALVINGS: u32 = 6;
 
-/// The orbits of `problem(value)` at the values in this order, each proved by itself; the guess is
-/// extrapolated from the two points before. Where the step is too large for Newton's method, points
+/// The orbits of `problem(value)` at the values in this order, each proved by itself ([`prove_all`], from a
+/// start for every unknown); the guess is extrapolated from the two points before. Where the step is too large for Newton's method, points
 /// between are passed through (not returned). Ends after the first point that fails, which may be where
 /// the family turns back.
 ///
@@ -55,26 +55,13 @@ const MOST_HALVINGS: u32 = 6;
 /// let start = Start { frequency: 1.04, cosines: vec![0.0, 0.3], sines: vec![] };
 /// let amplitudes = [(3, 10), (1, 1), (2, 1)].map(Into::into);
 /// let problem = |a: &rug::Rational| Ok((field.clone(), Kind::InitialAmplitude(a.clone())));
-/// let members = family(&amplitudes, problem, &start, &Request::default())?;
+/// let members = family(&amplitudes, problem, &[start], &Request::default())?;
 /// let proofs: Vec<_> = members.iter().flat_map(|m| &m.proof).collect();
 /// assert_eq!(proofs.len(), 3);
 /// assert!(proofs.windows(2).all(|p| p[0].frequency.upper() < p[1].frequency.lower()));
 /// # Ok::<(), lindstedt_orbit::Failure>(())
 /// ```
 pub fn family(
-    values: &[Rational],
-    problem: impl Fn(&Rational) -> Result<(Field, Kind), Failure>,
-    start: &Start,
-    request: &Request,
-) -> Result<Vec<Member>, Failure> {
-    family_all(values, problem, std::slice::from_ref(start), request)
-}
-
-/// The same for several unknowns, with a guess for each ([`prove_all`]).
-///
-/// # Errors
-/// As [`family`].
-pub fn family_all(
     values: &[Rational],
     problem: impl Fn(&Rational) -> Result<(Field, Kind), Failure>,
     starts: &[Start],

@@ -247,7 +247,7 @@ fn families_are_followed_and_end_where_they_end() {
     };
     let start = Start { frequency: 0.98, cosines: vec![0.0, 2.0], sines: vec![] };
     let values = [(1, 2), (1, 1), (4, 1)].map(Rational::from);
-    let members = family(&values, van_der_pol, &start, &Request::default()).unwrap();
+    let members = family(&values, van_der_pol, &[start], &Request::default()).unwrap();
     let periods: Vec<f64> =
         members.iter().map(|m| m.proof.as_ref().unwrap().period.midpoint().to_f64()).collect();
     assert!((periods[0] - 6.380_675_801_773).abs() < 1e-11, "{periods:?}");
@@ -256,7 +256,7 @@ fn families_are_followed_and_end_where_they_end() {
     let start = Start { frequency: 0.9, cosines: vec![0.0, 0.5], sines: vec![] };
     let values = [(1, 2), (9, 10), (11, 10), (6, 5)].map(Rational::from);
     let request = Request { modes_limit: 60, ..Request::default() };
-    let members = family(&values, soft, &start, &request).unwrap();
+    let members = family(&values, soft, &[start], &request).unwrap();
     let proved: Vec<bool> = members.iter().map(|m| m.proof.is_ok()).collect();
     assert_eq!(proved, [true, true, false]);
 }

@@ -4,8 +4,7 @@ use crate::common::{duffing, field, guess, proved, q, x, y};
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_orbit::{
-    Cover, Failure, Field, Kind, Proof, Request, Start, cover, family_all, guesses, guesses_all,
-    prove,
+    Cover, Failure, Field, Kind, Proof, Request, Start, cover, family, guesses, guesses_all, prove,
 };
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -145,7 +144,7 @@ fn between_all(problem: &Problem, kind: &Kind, name: &str, ends: &[Rational; 2])
     let of = |value: &Rational| Field::of_problem(problem, &at(name, value));
     let guesses = guesses_all(&of(&ends[0]).unwrap(), kind, &Default::default()).unwrap();
     let members =
-        family_all(ends, |value| Ok((of(value)?, kind.clone())), &guesses[0], &Request::default());
+        family(ends, |value| Ok((of(value)?, kind.clone())), &guesses[0], &Request::default());
     let proofs: Vec<Proof> = members.unwrap().into_iter().map(|m| m.proof.unwrap()).collect();
     let part = |part: &[Rational; 2]| {
         Ok((Field::between(problem, &Values::new(), name, part)?, kind.clone()))

@@ -26,8 +26,8 @@ mod tests;
 pub mod words;
 
 pub use delay::{Delay, Late};
-use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
-use lindstedt_number::{Whole, common_measure};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop, common_measure};
+use lindstedt_number::Whole;
 use rug::{Integer, Rational};
 use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};

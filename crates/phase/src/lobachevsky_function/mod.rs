@@ -7,7 +7,7 @@
 //!
 //! Every function takes a [`Point`] that is known exactly and the precision, and returns a ball:
 //! the true value lies in it, whatever the argument (10^-300, 10^100, pi/2 - 10^-1000), and its
-//! radius is about 2^-bits relative to the value. The `_digits` functions print certified digits.
+//! radius is about 2^-bits relative to the value.
 //! [`lobachevsky_f64`] is the fast path for double precision.
 
 mod double;

@@ -127,10 +127,7 @@ impl OnePhase {
             }
         }
         cuts.sort_by(f64::total_cmp);
-        let terms = match &self.law {
-            Expression::Sum(terms) => terms.as_slice(),
-            single => std::slice::from_ref(single),
-        };
+        let terms = self.law.terms();
         let works: Vec<bool> = terms.iter().map(works).collect();
         let (mut sums, mut absolute) = ([[0.0; 2]; 2], [0.0; 2]);
         for pair in cuts.windows(2) {

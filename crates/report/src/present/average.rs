@@ -1,6 +1,6 @@
 //! Averaged equations.
 
-use super::{Present, both, classification, condition_text, equation, head};
+use super::{Pen, Present, both, classification, condition_text, equation, head};
 use crate::{Document, Formula};
 use lindstedt::Answer;
 use lindstedt::averaging::{
@@ -18,39 +18,42 @@ const BETWEEN_TURNING_POINTS: &str = "a is the amplitude of the turning points, 
      at psi = pi); u_n holds for 0 <= psi <= pi, where x' < 0, and x(a, psi + pi) = -x(a, psi)";
 
 impl Present for Answer<Averaging> {
-    fn document(&self) -> Document {
-        let result = &self.value;
-        let problem = &result.problem;
-        let mut page = head(problem);
-        page = classification(page, result.description.as_ref());
-        page = page.formula(equation(problem)).formula(ansatz(&problem.small));
-        let normalisation = match result.between_turning_points() {
-            true => BETWEEN_TURNING_POINTS,
-            false => condition_text(Condition::FreeAmplitude),
-        };
-        page = page.words(format!("Normalisation: {normalisation}."));
-        if !result.symbols.is_empty() {
-            page = page
-                .words(format!("Without a value, kept as symbols: {}.", result.symbols.join(", ")));
-        }
-        for n in 0..=result.order {
-            page = page.formula(solution(result, n));
-            for (name, rates) in [("A", &result.amplitude_rate), ("B", &result.phase_rate)] {
-                if n > 0 || name == "B" {
-                    let terms = rates.get(n).map_or(&[][..], Vec::as_slice);
-                    page = page.formula(both(|style| {
-                        format!("{} = {}", indexed(name, n, style), rate(terms, "a", style))
-                    }));
-                }
+    fn page(&self, pen: Pen) -> Document {
+        page(&self.value, pen)
+    }
+}
+
+pub(super) fn page(result: &Averaging, pen: Pen) -> Document {
+    let problem = &result.problem;
+    let mut page = head(problem);
+    page = classification(page, result.description.as_ref());
+    page = page.formula(equation(problem)).formula(ansatz(&problem.small));
+    let normalisation = match result.between_turning_points() {
+        true => BETWEEN_TURNING_POINTS,
+        false => condition_text(Condition::FreeAmplitude),
+    };
+    page = page.words(format!("Normalisation: {normalisation}."));
+    if !result.symbols.is_empty() {
+        page =
+            page.words(format!("Without a value, kept as symbols: {}.", result.symbols.join(", ")));
+    }
+    for n in 0..=result.order {
+        page = page.formula(solution(result, n, pen));
+        for (name, rates) in [("A", &result.amplitude_rate), ("B", &result.phase_rate)] {
+            if n > 0 || name == "B" {
+                let terms = rates.get(n).map_or(&[][..], Vec::as_slice);
+                page = page.formula(pen.both(|style| {
+                    format!("{} = {}", indexed(name, n, style), rate(terms, "a", style))
+                }));
             }
         }
-        page = match (&result.cycles, &result.single_cycle) {
-            (Some(found), _) => cycles(page, found, &problem.small),
-            (None, Some(cycle)) => single_cycle(page, cycle, &problem.small),
-            (None, None) => not_listed(result).into_iter().fold(page, Document::words),
-        };
-        page.words(residual(result))
     }
+    page = match (&result.cycles, &result.single_cycle) {
+        (Some(found), _) => cycles(page, found, &problem.small),
+        (None, Some(cycle)) => single_cycle(page, cycle, &problem.small),
+        (None, None) => not_listed(result).into_iter().fold(page, Document::words),
+    };
+    page.words(residual(result))
 }
 
 /// Why limit cycles are not listed, where there may be some.
@@ -170,8 +173,8 @@ fn ansatz(small: &str) -> Formula {
     )
 }
 
-fn solution(result: &Averaging, n: usize) -> Formula {
-    both(|style| {
+fn solution(result: &Averaging, n: usize, pen: Pen) -> Formula {
+    pen.both(|style| {
         let solution = result.solution.get(n).map_or(Cow::Borrowed("0"), |u| printed(u, style));
         format!("{} = {}", indexed("u", n, style), shortened(solution.into_owned(), style))
     })

@@ -1,12 +1,12 @@
 //! Problems: a list, or one with its file.
 
 use super::classification::lines;
-use super::{Present, condition_text};
+use super::{Pen, Present, condition_text};
 use crate::{Block, Document, Formula};
 use lindstedt::catalogue::{Catalogue, Entry};
 
 impl Present for Catalogue {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let mut page = Document::default();
         for entry in &self.problems {
             page = match &entry.file {

@@ -1,6 +1,6 @@
 //! A derivation as one would write it on the board, order by order.
 
-use super::{LATEX, Present, both, classification, condition_text, equation, head};
+use super::{Pen, Present, classification, condition_text, equation, head};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name};
 use lindstedt::unstable::equation::{AmplitudeRole, Condition, Quantity};
@@ -15,16 +15,15 @@ const RING_TEXT: &str = "l = -ln|cos(tau)|, Lambda_m = integral of l^m/m! - mu_m
                          mu_m = mean of l^m/m!, f_n = right side without W_n x_0''.";
 
 impl Present for Answer<Derivation> {
-    fn document(&self) -> Document {
-        Board { value: &self.value, latex: LATEX.get() }.page()
+    fn page(&self, pen: Pen) -> Document {
+        Board { value: &self.value, pen }.page()
     }
 }
 
 /// A derivation with what is written of it.
 struct Board<'a> {
     value: &'a Derivation,
-    /// Whether formulas have a LaTeX form.
-    latex: bool,
+    pen: Pen,
 }
 
 impl Board<'_> {
@@ -56,7 +55,7 @@ impl Board<'_> {
 
     /// tau = omega t, omega^2 = kappa (1 + W_1 eps + ...), x = x_0 + x_1 eps + ...
     fn ansatz(&self) -> Formula {
-        both(|style| {
+        self.pen.both(|style| {
             let (small, kappa) = (self.small(style), self.value.ring_print(style));
             let (tau, omega, times, gap, dots) = match style {
                 Style::Text => ("tau", "omega", "*", "   ", "..."),
@@ -114,7 +113,7 @@ impl Board<'_> {
         } else {
             page = page.formula(self.right_side(n)).formula(self.secular(n));
             if result.condition == Condition::LimitCycle && n > 1 {
-                page = page.formula(both(|style| {
+                page = page.formula(self.pen.both(|style| {
                     let (before, value) = (n - 1, result.amplitude_correction(n - 1, style));
                     match style {
                         Style::Text => format!(
@@ -128,7 +127,7 @@ impl Board<'_> {
                 }));
             }
         }
-        page.formula(both(|style| {
+        page.formula(self.pen.both(|style| {
             let terms = result.terms(n);
             let solution = if terms > PRINTED_TERMS {
                 counted(terms, style)
@@ -143,14 +142,14 @@ impl Board<'_> {
     fn right_side(&self, n: usize) -> Formula {
         let (value, most) = (self.value, PRINTED_TERMS);
         // It is formed once for both.
-        let (printed, latex) = if self.latex {
+        let (printed, latex) = if self.pen.latex {
             let found = value.print_right_side(n, [Style::Text, Style::Latex], most);
             found.map(|([text, latex], terms)| ((text, terms), latex)).unzip()
         } else {
             let found = value.print_right_side(n, [Style::Text], most);
             (found.map(|([text], terms)| (text, terms)), None)
         };
-        both(|style| {
+        self.pen.both(|style| {
             let right_side = match (&printed, style) {
                 (None, _) => indexed("f", n, style),
                 (Some((_, 0)), _) => String::new(),
@@ -166,7 +165,7 @@ impl Board<'_> {
 
     /// The condition that leaves no secular term, and the W_n that it gives.
     fn secular(&self, n: usize) -> Formula {
-        both(|style| {
+        self.pen.both(|style| {
             let w = indexed("W", n, style);
             let value = self.value.frequency_correction(n, style);
             let leading = self.value.amplitude_correction(0, style);
@@ -186,7 +185,7 @@ impl Board<'_> {
     /// The series, coefficient by coefficient.
     fn result(&self, mut page: Document) -> Document {
         let result = self.value;
-        let small = both(|style| self.small(style));
+        let small = self.pen.both(|style| self.small(style));
         for (series, numbers) in result.series.iter().zip(&result.numbers) {
             let name = series.quantity.name().replace('_', " ");
             let line = Text::words(format!("{name} in powers of ")).formula(small.clone()).and(":");
@@ -195,7 +194,7 @@ impl Board<'_> {
                 let print = |style| result.print_coefficient(series, n, style);
                 // A long coefficient is not written once more.
                 let text = number.exact.clone().unwrap_or_else(|| print(Style::Text));
-                let latex = if self.latex { print(Style::Latex) } else { String::new() };
+                let latex = if self.pen.latex { print(Style::Latex) } else { String::new() };
                 let exact = Formula::new(text, latex);
                 page = page.formula(coefficient(n, exact, number));
             }
@@ -210,7 +209,8 @@ impl Board<'_> {
         let series = result.series.iter().find(|series| series.quantity == Quantity::Frequency);
         let scaled = result.amplitude.as_ref().map(ToString::to_string).filter(|a| a != "1");
         let in_factor = matches!(result.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
-        let Some(series) = series.filter(|_| self.latex && (scaled.is_none() || !in_factor)) else {
+        let Some(series) = series.filter(|_| self.pen.latex && (scaled.is_none() || !in_factor))
+        else {
             return Vec::new();
         };
         let count = series.coefficients.len();

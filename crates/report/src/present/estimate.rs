@@ -1,12 +1,12 @@
 //! An expansion in estimated numbers.
 
-use super::{Present, condition_text};
+use super::{Pen, Present, condition_text};
 use crate::{Block, Document, Formula, Table};
 use lindstedt::Answer;
 use lindstedt::numeric::Estimate;
 
 impl Present for Answer<Estimate> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let result = &self.value;
         let equation = Block::Code(self.header.equation.clone());
         let mut page = Document::titled(self.header.problem.as_str()).with(equation);

@@ -1,6 +1,6 @@
 //! Numbers from the expansion: the period, the motion, the function.
 
-use super::{Present, problem_at, stability_word};
+use super::{Pen, Present, problem_at, stability_word};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Block, Document, Figure, Formula, Table, Text};
 use lindstedt::evaluate::averaged::{Moment, Motion, Quantity, SummedCycle};
@@ -21,7 +21,7 @@ fn with_error(number: Option<&Number>, known: &str, unknown: &str, none: &str) -
 }
 
 impl Present for Answer<Evaluation> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let mut lines = periods(self);
         let how = format!("{} of T/(2*pi) in ", method_name(value.resummed.method));
@@ -142,7 +142,7 @@ fn shown(found: &Displacements) -> Table {
 }
 
 impl Present for Answer<Motion> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let motion = &self.value;
         let number = |number: &Option<Number>| {
             let none = "not one digit: the last orders differ by more than its size";
@@ -242,13 +242,13 @@ fn moment(m: &Moment) -> [Text; 4] {
 }
 
 impl Present for Answer<ExpansionCode> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         Document::default().with(Block::Source(self.value.code.clone()))
     }
 }
 
 impl Present for Answer<SolutionCode> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         Document::default().with(Block::Source(self.value.code.clone()))
     }
 }

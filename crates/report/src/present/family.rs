@@ -1,6 +1,6 @@
 //! Proved orbits over a parameter.
 
-use super::{Present, parameter, values};
+use super::{Pen, Present, parameter, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
 use lindstedt::evaluate::{ProvedBranch, ProvedFamily, ProvedMember};
@@ -15,7 +15,7 @@ fn title(answer: &Answer<ProvedFamily>) -> String {
 type Quantity = fn(&ProvedMember) -> Option<&Number>;
 
 impl Present for Answer<ProvedFamily> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let words = "Every point is proved. Between: in how many parts the interval up to the next value is proved, \
                      for all values in it; -: it is not.";
         let several = self.value.branches.len() > 1;

@@ -1,7 +1,7 @@
 //! Homoclinic orbits to any order: the parameter, the orbit, the nonlinear time.
 
 use super::derive::{coefficient, indexed};
-use super::{Present, both, equation, head};
+use super::{Pen, Present, both, equation, head};
 use crate::{Document, Formula, Text};
 use lindstedt::threshold::HomoclinicSeries;
 use lindstedt::unstable::coeff::print::{
@@ -10,7 +10,7 @@ use lindstedt::unstable::coeff::print::{
 use lindstedt::{Answer, Exact, Number};
 
 impl Present for Answer<HomoclinicSeries> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let found = &self.value;
         let problem = &found.problem;
         let name = &found.unknown;

@@ -1,7 +1,8 @@
 //! Hopf points: the parameter and the frequency in powers of the amplitude, the cycle, what they say.
 
 use super::derive::{coefficient, indexed};
-use super::{Present, both, equation, head, stability_word};
+use super::resonance::sought;
+use super::{Pen, Present, both, equation, head, stability_word};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::hopf::{Coefficient, Law};
@@ -9,29 +10,32 @@ use lindstedt::{Answer, HopfSeries, SoughtSeries};
 
 /// The page of either form.
 impl Present for Answer<SoughtSeries> {
-    fn document(&self) -> Document {
+    fn page(&self, pen: Pen) -> Document {
         match &self.value {
-            SoughtSeries::Edges(value) => self.clone().map(|_| value.clone()).document(),
-            SoughtSeries::Cycle(value) => self.clone().map(|_| value.clone()).document(),
+            SoughtSeries::Edges(value) => sought(value, pen),
+            SoughtSeries::Cycle(value) => page(value),
         }
     }
 }
 
 impl Present for Answer<HopfSeries> {
-    fn document(&self) -> Document {
-        let found = &self.value;
-        let problem = &found.problem;
-        let page = head(problem).formula(equation(problem));
-        let page = series(found, motion(found, points(found, page)));
-        let page = laws(found, page);
-        page.words(match (found.cycle.checked_orders, found.cycle.exact) {
+    fn page(&self, _: Pen) -> Document {
+        page(&self.value)
+    }
+}
+
+fn page(found: &HopfSeries) -> Document {
+    let problem = &found.problem;
+    let page = head(problem).formula(equation(problem));
+    let page = series(found, motion(found, points(found, page)));
+    let page = laws(found, page);
+    page.words(match (found.cycle.checked_orders, found.cycle.exact) {
             (None, _) => "Not put into the equation: not checked.".to_owned(),
             (Some(last), exact) => {
                 let how = if exact { "vanishes identically" } else { "encloses zero" };
                 format!("Residual: the series put into the equation and multiplied out {how} at orders 1 to {last}.")
             }
         })
-    }
 }
 
 /// Where it was looked, and what was found.

@@ -26,10 +26,9 @@ use crate::format::steers;
 use crate::{Document, Figure, Formula, Table, Text};
 use classification::classification;
 use lindstedt::unstable::coeff::print::Style;
-use lindstedt::unstable::equation::{Condition, Problem, print};
+use lindstedt::unstable::equation::{Condition, Problem};
 use lindstedt::{Header, Number, Status};
 use serde::Serialize;
-use std::cell::Cell;
 
 pub use respond::angle;
 pub use threshold::shade;
@@ -58,21 +57,32 @@ fn stability_word(stable: Option<bool>, open: &'static str) -> &'static str {
     stable.map_or(open, |stable| if stable { "stable" } else { "unstable" })
 }
 
-thread_local! {
-    /// Whether formulas have a LaTeX form: their coefficients may have millions of terms.
-    static LATEX: Cell<bool> = const { Cell::new(true) };
+/// What writes the formulas of a page.
+#[derive(Clone, Copy, Debug)]
+pub struct Pen {
+    /// Whether they have a LaTeX form: their coefficients may have millions of terms.
+    latex: bool,
+}
+
+impl Pen {
+    /// A formula from what prints it in the notations that are read.
+    fn both(self, print: impl Fn(Style) -> String) -> Formula {
+        let latex = if self.latex { print(Style::Latex) } else { String::new() };
+        Formula::new(print(Style::Text), latex)
+    }
 }
 
 /// An answer that can be shown.
 pub trait Present {
+    /// The page, its formulas written by a pen.
+    fn page(&self, pen: Pen) -> Document;
     /// The page.
-    fn document(&self) -> Document;
+    fn document(&self) -> Document {
+        self.page(Pen { latex: true })
+    }
     /// The page for a reader of plain text alone: its formulas may lack the LaTeX form, which is then not printed.
     fn plain_document(&self) -> Document {
-        LATEX.set(false);
-        let page = self.document();
-        LATEX.set(true);
-        page
+        self.page(Pen { latex: false })
     }
     /// The figure, where there is something to draw.
     fn figure(&self) -> Option<Figure> {
@@ -157,15 +167,14 @@ fn parameter(header: &Header, name: &str) -> Axis {
     })
 }
 
-/// A formula from what prints it in the notations that are read.
+/// A short formula from what prints it in both notations.
 fn both(print: impl Fn(Style) -> String) -> Formula {
-    let latex = if LATEX.get() { print(Style::Latex) } else { String::new() };
-    Formula::new(print(Style::Text), latex)
+    Pen { latex: true }.both(print)
 }
 
 /// The equation of a problem.
 fn equation(problem: &Problem) -> Formula {
-    Formula::new(problem.print(print::Style::Text), problem.print(print::Style::Latex))
+    both(|style| problem.print(style))
 }
 
 /// A condition in words.

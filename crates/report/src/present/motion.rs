@@ -1,6 +1,6 @@
 //! Motions, their chaos, and bifurcation diagrams.
 
-use super::{Present, parameter, problem_at};
+use super::{Pen, Present, parameter, problem_at};
 use crate::figure::{Axis, Colour, Layer, Mark, colours};
 use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
@@ -93,7 +93,7 @@ fn events(list: &[Event]) -> Table {
 }
 
 impl Present for Answer<Motion> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let unknowns = &value.start.unknowns;
         let mut page = head(&self.header, &value.start, value.history);
@@ -268,7 +268,7 @@ fn pieces(line: &[Dot], phase: bool, stuck: bool) -> Vec<(f64, f64)> {
 }
 
 impl Present for Answer<Diagnosis> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let mut page = head(&self.header, &value.start, value.history);
         if let Some(found) = &value.lyapunov {
@@ -301,7 +301,7 @@ impl Present for Answer<Diagnosis> {
 
 impl Present for Answer<Diagram> {
     /// What the points span, per value; the points themselves belong into a file.
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let (coordinate, what) = value.sweep.ordinate();
         let head = Table::new([

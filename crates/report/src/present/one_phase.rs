@@ -1,6 +1,6 @@
 //! First-order averaging as numbers.
 
-use super::{Present, problem_at, stability_word};
+use super::{Pen, Present, problem_at, stability_word};
 use crate::{Document, Formula, Table, Text};
 use lindstedt::evaluate::FirstOrder;
 use lindstedt::unstable::coeff::print::latex_name;
@@ -21,7 +21,7 @@ fn beside_cycles(found: &FirstOrder) -> Vec<(Text, Text)> {
 }
 
 impl Present for Answer<FirstOrder> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let found = &self.value;
         let small = latex_name(&found.parameter);
         let rate = |name: &str, latex: &str| {

@@ -1,14 +1,14 @@
 //! The parameter for which an orbit persists, to first order.
 
 use super::threshold::verdict;
-use super::{Present, equation, head};
+use super::{Pen, Present, equation, head};
 use crate::{Document, Formula, Text};
 use lindstedt::threshold::Persistence;
 use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number};
 
 impl Present for Answer<Persistence> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let found = &self.value;
         let formula = |name: &str| Formula::new(name, latex_name(name));
         let sought = Text::words("Sought: ")

@@ -1,7 +1,7 @@
 //! The orbit as a theorem.
 
 use super::evaluate::time;
-use super::{Present, problem_at};
+use super::{Pen, Present, problem_at};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table, Text};
 use lindstedt::evaluate::{ProofVerdict, ProvedOrbit, ProvedState};
@@ -20,7 +20,7 @@ fn shown(number: &Number) -> String {
 }
 
 impl Present for Answer<ProvedOrbit> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let title = problem_at(&self.header);
         let page = orbit(Document::titled(title), value);

@@ -1,7 +1,7 @@
 //! Slow flows: averaged equations at resonance, in complex amplitudes and, for one unknown, in polar form.
 
-use super::average::shortened;
-use super::{Present, both, equation, head};
+use super::average::{self, shortened};
+use super::{Pen, Present, equation, head};
 use crate::Document;
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::derivation::resonance::{
@@ -10,64 +10,64 @@ use lindstedt::unstable::derivation::resonance::{
 use lindstedt::{Answer, Averaged, SlowFlow};
 
 impl Present for Answer<SlowFlow> {
-    fn document(&self) -> Document {
-        let board = Board(&self.value);
-        let problem = &self.value.problem;
-        let page = head(problem).formula(equation(problem));
-        board.checks(board.polar(board.flow(board.system(page))))
+    fn page(&self, pen: Pen) -> Document {
+        Board { value: &self.value, pen }.page()
     }
 }
 
 /// The page of either form.
 impl Present for Answer<Averaged> {
-    fn document(&self) -> Document {
+    fn page(&self, pen: Pen) -> Document {
         match &self.value {
-            Averaged::Polar(value) => self.clone().map(|_| value.clone()).document(),
-            Averaged::Flow(value) => self.clone().map(|_| value.clone()).document(),
+            Averaged::Polar(value) => average::page(value, pen),
+            Averaged::Flow(value) => Board { value, pen }.page(),
         }
     }
 }
 
 impl Present for Answer<Sought> {
-    fn document(&self) -> Document {
-        let found = &self.value;
-        let problem = &found.problem;
-        let mut page = head(problem).formula(equation(problem));
-        let (name, nu) = (&found.parameter, &found.frequency);
-        let turns = found.branches.iter().any(SoughtBranch::turns);
-        let own = if turns { "but multiples of x_0' no part" } else { "no part" };
-        page = page.words(format!(
-            "Sought: {name}, for which x stays periodic with the frequency {nu}; corrections have {own} of that frequency."
-        ));
-        if !found.all {
-            page = page.words(
-                "Motions that start with cos or sin alone; other mixtures were not tried."
-                    .to_owned(),
-            );
-        }
-        for branch in &found.branches {
-            page = page.formula(both(|style| {
-                format!("{} = {}", print_name(name, style), found.print_series(branch, style))
-            }));
-            if branch.origin != "0" {
-                let origin = &branch.origin;
-                page = page
-                    .words(format!("Below, t is counted from the time {origin} of the equation."));
-            }
-            for (n, terms) in branch.solution.iter().enumerate() {
-                page = page.formula(both(|style| {
-                    let x = shortened(found.print_motion(terms, style), style);
-                    format!("{} = {x}", print_name(&format!("x_{n}"), style))
-                }));
-            }
-            page = page.words(residual(branch.checked_orders));
-        }
-        page
+    fn page(&self, pen: Pen) -> Document {
+        sought(&self.value, pen)
     }
 }
 
+/// Where a motion stays periodic.
+pub(super) fn sought(found: &Sought, pen: Pen) -> Document {
+    let problem = &found.problem;
+    let mut page = head(problem).formula(equation(problem));
+    let (name, nu) = (&found.parameter, &found.frequency);
+    let turns = found.branches.iter().any(SoughtBranch::turns);
+    let own = if turns { "but multiples of x_0' no part" } else { "no part" };
+    page = page.words(format!(
+            "Sought: {name}, for which x stays periodic with the frequency {nu}; corrections have {own} of that frequency."
+        ));
+    if !found.all {
+        page = page.words(
+            "Motions that start with cos or sin alone; other mixtures were not tried.".to_owned(),
+        );
+    }
+    for branch in &found.branches {
+        page = page.formula(pen.both(|style| {
+            format!("{} = {}", print_name(name, style), found.print_series(branch, style))
+        }));
+        if branch.origin != "0" {
+            let origin = &branch.origin;
+            page =
+                page.words(format!("Below, t is counted from the time {origin} of the equation."));
+        }
+        for (n, terms) in branch.solution.iter().enumerate() {
+            page = page.formula(pen.both(|style| {
+                let x = shortened(found.print_motion(terms, style), style);
+                format!("{} = {x}", print_name(&format!("x_{n}"), style))
+            }));
+        }
+        page = page.words(residual(branch.checked_orders));
+    }
+    page
+}
+
 impl Present for Answer<NormalMode> {
-    fn document(&self) -> Document {
+    fn page(&self, pen: Pen) -> Document {
         let mode = &self.value;
         let problem = &mode.problem;
         let mut page = head(problem).formula(equation(problem));
@@ -76,7 +76,7 @@ impl Present for Answer<NormalMode> {
             mode.mode,
             mode.print_square(Style::Text)
         ));
-        page = page.formula(both(|style| {
+        page = page.formula(pen.both(|style| {
             let line = shortened(mode.print_in_amplitude(&mode.frequency_squared, style), style);
             match style {
                 Style::Text => format!("Omega^2/nu^2 = {line}"),
@@ -84,7 +84,7 @@ impl Present for Answer<NormalMode> {
             }
         }));
         if mode.growth.iter().any(|terms| !terms.is_empty()) {
-            page = page.formula(both(|style| {
+            page = page.formula(pen.both(|style| {
                 let line = shortened(mode.print_in_amplitude(&mode.growth, style), style);
                 match style {
                     Style::Text => format!("a'/(nu*a) = {line}"),
@@ -94,7 +94,7 @@ impl Present for Answer<NormalMode> {
         }
         for n in 0..=mode.order {
             for (i, orders) in mode.solution.iter().enumerate() {
-                page = page.formula(both(|style| {
+                page = page.formula(pen.both(|style| {
                     let x = print_name(&problem.unknown(i), style);
                     let index =
                         if style == Style::Text { format!("{n}") } else { format!("{{({n})}}") };
@@ -141,45 +141,55 @@ fn residual_within(enclosed: Option<Enclosed>, checked_orders: Option<usize>) ->
     )
 }
 
-struct Board<'a>(&'a SlowFlow);
+/// A slow flow with what is written of it.
+struct Board<'a> {
+    value: &'a SlowFlow,
+    pen: Pen,
+}
 
 impl Board<'_> {
+    fn page(&self) -> Document {
+        let problem = &self.value.problem;
+        let page = head(problem).formula(equation(problem));
+        self.checks(self.polar(self.flow(self.system(page))))
+    }
+
     /// z, or z_2 of several unknowns.
     fn indexed(&self, stem: &str, j: usize) -> String {
-        if self.0.unknowns() == 1 { stem.to_owned() } else { format!("{stem}_{}", j + 1) }
+        if self.value.unknowns() == 1 { stem.to_owned() } else { format!("{stem}_{}", j + 1) }
     }
 
     /// u_n, or u_{jn} of several unknowns.
     fn order(&self, stem: &str, j: usize, n: usize, style: Style) -> String {
-        let index = if self.0.unknowns() == 1 { String::new() } else { (j + 1).to_string() };
+        let index = if self.value.unknowns() == 1 { String::new() } else { (j + 1).to_string() };
         print_name(&format!("{stem}_{index}{n}"), style)
     }
 
     fn polynomial(&self, terms: &Terms, style: Style) -> String {
-        shortened(self.0.print(terms, style), style)
+        shortened(self.value.print(terms, style), style)
     }
 
     /// The unknowns, their modes, the force.
     fn system(&self, mut page: Document) -> Document {
-        let flow = self.0;
+        let (flow, pen) = (self.value, self.pen);
         let amplitude = "Normalisation: z is the complex amplitude of the first harmonic: corrections have none.";
         page = page.words(amplitude);
         for i in 0..flow.system.shapes.as_ref().map_or(0, Vec::len) {
-            page = page.formula(both(|style| flow.print_shapes(style).swap_remove(i)));
+            page = page.formula(pen.both(|style| flow.print_shapes(style).swap_remove(i)));
         }
         if !flow.system.is_exact() {
             for (j, square) in flow.system.squares.iter().enumerate() {
                 let stem = self.indexed("nu", j);
                 let nu = flow.number(&flow.system.frequencies[j]);
                 let square = flow.number_of_modes(square);
-                page = page.formula(both(|style| {
+                page = page.formula(pen.both(|style| {
                     let name = print_name(&stem, style);
                     format!("{name}^2 = {square}, {name} = {nu}")
                 }));
             }
         }
         for (j, coordinate) in flow.coordinates().iter().enumerate() {
-            page = page.formula(both(|style| {
+            page = page.formula(pen.both(|style| {
                 let z = ["z", "zbar"].map(|z| print_name(&self.indexed(z, j), style));
                 let x = print_name(coordinate, style);
                 self.series(&format!("{x} = {} + {}", z[0], z[1]), "u", j, style)
@@ -190,7 +200,7 @@ impl Board<'_> {
                 1 => print_name(stem, style),
                 _ => print_name(&format!("{stem}_{}", l + 1), style),
             };
-            page = page.formula(both(|style| {
+            page = page.formula(pen.both(|style| {
                 let (e, eta) = (indexed("E", style), indexed("eta", style));
                 let rate = flow.print_force(l, style);
                 match style {
@@ -202,9 +212,9 @@ impl Board<'_> {
             }));
             if flow.print_start(l, Style::Text).is_some() {
                 let start = |style| flow.print_start(l, style).unwrap_or_default();
-                page = page.formula(both(|style| {
-                    format!("{}(0) = {}", indexed("eta", style), start(style))
-                }));
+                page = page.formula(
+                    pen.both(|style| format!("{}(0) = {}", indexed("eta", style), start(style))),
+                );
             }
         }
         if !flow.system.independent.is_empty() {
@@ -226,7 +236,7 @@ impl Board<'_> {
     /// left + u_1 eps + ...
     fn series(&self, left: &str, stem: &str, j: usize, style: Style) -> String {
         let first = self.order(stem, j, 1, style);
-        let small = print_name(&self.0.problem.small, style);
+        let small = print_name(&self.value.problem.small, style);
         match style {
             Style::Text => format!("{left} + {first}*{small} + ..."),
             Style::Latex => format!(r"{left} + {first}\,{small} + \dots"),
@@ -235,9 +245,9 @@ impl Board<'_> {
 
     /// f_n and u_n, order by order.
     fn flow(&self, mut page: Document) -> Document {
-        let flow = self.0;
+        let flow = self.value;
         for j in 0..flow.unknowns() {
-            page = page.formula(both(|style| {
+            page = page.formula(self.pen.both(|style| {
                 let z = print_name(&self.indexed("z", j), style);
                 let left =
                     if style == Style::Text { format!("{z}'") } else { format!(r"\dot {z}") };
@@ -249,7 +259,7 @@ impl Board<'_> {
             for j in 0..flow.unknowns() {
                 let lists = [("f", &flow.flow[j][n]), ("u", &flow.solution[j][n])];
                 for (stem, terms) in lists.into_iter().skip(usize::from(n == 0)) {
-                    page = page.formula(both(|style| {
+                    page = page.formula(self.pen.both(|style| {
                         let left = self.order(stem, j, n, style);
                         format!("{left} = {}", self.polynomial(terms, style))
                     }));
@@ -261,13 +271,13 @@ impl Board<'_> {
 
     /// a' and a gamma', or a psi', of one unknown.
     fn polar(&self, page: Document) -> Document {
-        let Some(Polar { slow, amplitude, phase }) = self.0.polar() else { return page };
+        let Some(Polar { slow, amplitude, phase }) = self.value.polar() else { return page };
         let gamma = |style| {
             let [t, s] = slow?;
             let turns = [(t, "eta"), (s, "psi")].map(|(n, phase)| print_turns(n, phase, style));
             Some(turns.join(" - "))
         };
-        let ansatz = both(|style| match (style, gamma(style)) {
+        let ansatz = self.pen.both(|style| match (style, gamma(style)) {
             (Style::Text, None) => "z = a/2*exp(i*psi)".to_owned(),
             (Style::Text, Some(gamma)) => format!("z = a/2*exp(i*psi)   gamma = {gamma}"),
             (Style::Latex, None) => r"z = \frac{a}{2}\,e^{i\psi}".to_owned(),
@@ -278,13 +288,13 @@ impl Board<'_> {
         // In the frame of the force nothing is left at order zero.
         let (second, nu) = match slow {
             Some(_) => (["a*gamma'", r"a\,\dot\gamma"], None),
-            None => (["a*psi'", r"a\,\dot\psi"], self.0.system.frequencies.first()),
+            None => (["a*psi'", r"a\,\dot\psi"], self.value.system.frequencies.first()),
         };
         let rates = [(["a'", r"\dot a"], None, &amplitude), (second, nu, &phase)];
         let mut page = page.heading("Polar form").formula(ansatz);
         for (left, nu, orders) in rates {
-            page = page.formula(both(|style| {
-                let rate = self.0.print_rate(nu.cloned(), orders, style);
+            page = page.formula(self.pen.both(|style| {
+                let rate = self.value.print_rate(nu.cloned(), orders, style);
                 let left = left[usize::from(style == Style::Latex)];
                 format!("{left} = {}", shortened(rate, style))
             }));
@@ -294,9 +304,9 @@ impl Board<'_> {
 
     /// The energy and the quadratic invariants, where there are any.
     fn conserved(&self, mut page: Document) -> Document {
-        let orders = &self.0.energy;
+        let orders = &self.value.energy;
         for (n, terms) in orders.iter().enumerate() {
-            page = page.formula(both(|style| {
+            page = page.formula(self.pen.both(|style| {
                 format!(
                     "{} = {}",
                     print_name(&format!("H_{n}"), style),
@@ -304,9 +314,10 @@ impl Board<'_> {
                 )
             }));
         }
-        for form in self.0.quadratic_invariants() {
-            page =
-                page.formula(both(|style| format!("Q = {}", self.polynomial(&form.terms, style))));
+        for form in self.value.quadratic_invariants() {
+            page = page.formula(
+                self.pen.both(|style| format!("Q = {}", self.polynomial(&form.terms, style))),
+            );
             let last = match form.orders {
                 1 => String::new(),
                 n => format!(" to f_{n}"),
@@ -319,16 +330,16 @@ impl Board<'_> {
         }
         page.words(format!(
             "Energy: H_0 + H_1*{} + ... is conserved by the flow, identically at orders 0 to {}.",
-            self.0.problem.small,
+            self.value.problem.small,
             orders.len() - 1
         ))
     }
 
     fn checks(&self, page: Document) -> Document {
         let mut page = self.conserved(page);
-        if let Some(near) = self.0.nearest() {
-            let unknown = &self.0.coordinates()[near.unknown];
-            let (size, order) = (self.0.size(&near.size), near.order);
+        if let Some(near) = self.value.nearest() {
+            let unknown = &self.value.coordinates()[near.unknown];
+            let (size, order) = (self.value.size(&near.size), near.order);
             let harmonic: Vec<String> = near.harmonic.iter().map(ToString::to_string).collect();
             let harmonic = harmonic.join(", ");
             page = page.words(format!(
@@ -336,6 +347,6 @@ impl Board<'_> {
                  order {order}."
             ));
         }
-        page.words(residual_within(self.0.enclosed, self.0.checked_orders))
+        page.words(residual_within(self.value.enclosed, self.value.checked_orders))
     }
 }

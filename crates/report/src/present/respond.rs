@@ -1,6 +1,6 @@
 //! Steady states at resonance: the states, the response curve with its backbone.
 
-use super::{Present, parameter, stability_word, values};
+use super::{Pen, Present, parameter, stability_word, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::respond::{
@@ -257,7 +257,7 @@ fn curves(value: &Response, title: String, [across, up]: [Axis; 2]) -> Figure {
 }
 
 impl Present for Answer<Response> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let at = values(&self.header);
         let whole = if value.complete {

@@ -2,7 +2,7 @@
 
 mod chart;
 
-use super::Present;
+use super::{Pen, Present};
 use crate::{Block, Document, Figure, Formula, Table, Text};
 use lindstedt::stability::{
     Aware, Found, OrbitStability, Predicted, PredictedOrbit, TrueOrbit, Truth,
@@ -163,7 +163,7 @@ fn listed(list: &[(String, String)], between: &str) -> String {
 }
 
 impl Present for Answer<OrbitStability> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let mapped = value.exact.as_ref().is_some_and(|exact| exact.return_map.is_some());
         let truth_is = if mapped {

@@ -1,6 +1,6 @@
 //! Period and frequency, or averaged rates, over swept parameters.
 
-use super::{Present, parameter, values};
+use super::{Pen, Present, parameter, values};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
 use lindstedt::evaluate::{Swept, SweptPeriod, SweptPoint, SweptRates};
@@ -86,7 +86,7 @@ fn title<P: Columns>(answer: &Answer<Swept<P>>) -> String {
 }
 
 impl<P: Columns> Present for Answer<Swept<P>> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let table = listed(&self.value.grid, ToString::to_string);
         let page = Document::titled(title(self)).table(table);
         let points = self.value.grid.points.iter().flatten().flatten();

@@ -1,6 +1,6 @@
 //! The threshold of homoclinic chaos: its numbers, its curves, its map.
 
-use super::{Present, parameter, problem_at};
+use super::{Pen, Present, parameter, problem_at};
 use crate::figure::{Axis, Colour, Mark, Raster, colours};
 use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
@@ -140,7 +140,7 @@ pub(super) fn verdict(words: &str) -> Text {
 }
 
 impl Present for Answer<HomoclinicThreshold> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let mut lines = numbers(value);
         lines.extend(orbits(value));

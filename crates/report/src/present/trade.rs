@@ -1,6 +1,6 @@
 //! What every tier costs, and how wrong it is: time against true error.
 
-use super::{Present, equation};
+use super::{Pen, Present, equation};
 use crate::figure::{Axis, Colour, Layer, Mark, colours};
 use crate::{Document, Figure, Table, Text};
 use lindstedt::Answer;
@@ -172,7 +172,7 @@ fn curve(figure: Figure, rows: &[Row], at: impl Fn(&Row) -> (f64, f64)) -> Figur
 }
 
 impl Present for Answer<Trade> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let value = &self.value;
         let period = format!("{} ({})", value.period, value.source);
         let proved = value.proved_period.as_ref().map(|number| {

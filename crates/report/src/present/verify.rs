@@ -1,6 +1,6 @@
 //! The expansion against the time domain.
 
-use super::Present;
+use super::{Pen, Present};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::Answer;
@@ -55,7 +55,7 @@ fn steady(value: &SteadyStates, small: Text) -> Document {
 }
 
 impl Present for Answer<Verification> {
-    fn document(&self) -> Document {
+    fn page(&self, _: Pen) -> Document {
         let name = self.value.parameter.as_str();
         let small = Text::from(Formula::new(name, latex_name(name)));
         let error = Text::from(Formula::new("max |x_N - x|", r"\max |x_N - x|"));

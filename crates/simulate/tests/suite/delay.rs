@@ -110,7 +110,7 @@ fn text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// From section 2 of the mathematics: the regular form, solved by the formulas with kappa and q.
+/// The regular form, solved by the formulas with kappa and q.
 fn orbit(params: &Value, gains: Option<(&str, &str)>) -> Orbit {
     let bits = 200;
     let get = |name: &str| Quantity::parse(&text(&params[name])).unwrap().float(bits);
@@ -260,8 +260,8 @@ fn delayed_impacts_and_their_growth() {
 }
 
 /// Orbit O3: at the gain A where G(-1) = 0 perturbations alternate with ratio -1; on both sides
-/// of it they shrink and grow. (The ratios of nonlinear simulations are recorded in the
-/// mathematics of section 2; A from the closed form of the flip boundary.)
+/// of it they shrink and grow. (The ratios are those of independent nonlinear
+/// simulations; A from the closed form of the flip boundary.)
 #[test]
 fn flip_of_orbit_o3() {
     let params: Value = serde_json::from_str(

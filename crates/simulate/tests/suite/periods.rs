@@ -1,4 +1,4 @@
-//! Periods of section 4 against closed forms, and the linearisation against differences.
+//! Periods against closed forms, and the linearisation against differences.
 
 use lindstedt_equation::{Expression, Function};
 use lindstedt_simulate::{

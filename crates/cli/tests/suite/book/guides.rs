@@ -120,9 +120,6 @@ mod quadratic_field {
             fn parameter(&self, name: &str) -> Option<(Rational, Rational)> {
                 (name == "k").then(|| (Rational::new(), Rational::from(1)))
             }
-            fn formal(&self, _: &str, _: usize) -> Option<(Rational, Rational)> {
-                None
-            }
         }
 
         let algebra = Trigonometric::new(QuadraticField { d: 2 });

@@ -94,18 +94,4 @@ impl<C: RationalAlgebra, T: Moments> Clock<'_, C, T> {
         let parts = Unfolding::new(self.constants, self.numbers, None, still, &self.stop)?;
         (0..still.len()).map(|n| parts.function(n, self.constants, self.lift, &self.stop)).collect()
     }
-
-    /// M = 1 + sum_m mu_m c_m, order by order: the mean of g. Where c_m = c^m its coefficients in powers of c are the
-    /// mu_m themselves.
-    pub fn mean_pace(&self) -> Vec<T::Element> {
-        let coefficient = |(n, numbers): (usize, &Vec<C::Element>)| {
-            let mut sum = if n == 0 { self.target.one() } else { self.target.zero() };
-            for (m, c) in (1u16..).zip(numbers) {
-                let term = self.target.mul(&self.target.moment(m), &(self.lift)(c));
-                self.target.add_assign(&mut sum, &term);
-            }
-            sum
-        };
-        self.numbers.iter().enumerate().map(coefficient).collect()
-    }
 }

@@ -5,7 +5,7 @@ use rug::{Integer, Rational};
 /// The largest rational number of which both are whole multiples, gcd of numerators over lcm of denominators; of 0 and q, |q|.
 ///
 /// ```
-/// use lindstedt_number::common_measure;
+/// use lindstedt_algebra::common_measure;
 /// use rug::Rational;
 ///
 /// let [p, q] = [(3, 4), (-5, 6)].map(Rational::from);
