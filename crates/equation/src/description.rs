@@ -167,6 +167,9 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
             "{} is not odd, f(-x, -x') = -f(x, x'): the two half turns between turning points differ",
             show(e)
         ),
+        Reason::NotPolynomial(e) if e.is_constant() => {
+            format!("{} is irrational, and coefficients are rational numbers here", show(e))
+        }
         Reason::NotPolynomial(e) => format!(
             "{} is no polynomial in x, x' and ln x^2 (of f regular at 0, taylor(f(z), 9) asks for one)",
             show(e)

@@ -251,6 +251,27 @@ fn summed_cycles_against_proved_orbits() {
     }
 }
 
+/// Of two orders and less, of which one vanishes or is small by accident. True values: collocation of the whole equation by
+/// Fourier series, and DOP853 of SciPy with the divergence along the cycle.
+#[test]
+fn short_sums_of_cycles() {
+    let drift = "x'' + 4*x - eps*x'/2 - 2*eps*x'^2 + 4/3*eps*x^4*x' = 0";
+    let turn = "x'' + 4*x - eps*x' - 11/6*eps*x^2 - 2/5*eps*x^3 + 3/5*eps*x'^3 = 0";
+    for (equation, order, which, truth) in
+        [(drift, 2, 2, -0.111_718_3), (turn, 1, 1, 1.994_507_171_8)]
+    {
+        let case = lindstedt::Oscillator::parse(equation).unwrap().set("eps", "1/10").unwrap();
+        let question = AveragedMotion { order: Some(order), ..AveragedMotion::default() };
+        let found = case.averaged_motion(&question, &work()).unwrap().value.cycles.unwrap();
+        let cycle = &found[0];
+        let numbers = [&cycle.amplitude, &cycle.frequency, &cycle.floquet_exponent];
+        let number = numbers[which].as_ref().unwrap();
+        let error = number.error.as_ref().unwrap().parse::<f64>().unwrap();
+        let gap = (number.decimal.parse::<f64>().unwrap() - truth).abs();
+        assert!(gap <= error && error < 40.0 * gap, "{equation} {order}: {number}, {truth}");
+    }
+}
+
 /// The exponent of van der Pol's cycle beside its period: at eps = 0.4 that of the integration, -0.403974101; the sum to
 /// order 7 alone -0.403974056; with -eps the cycle is unstable.
 #[test]

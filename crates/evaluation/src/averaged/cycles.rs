@@ -44,6 +44,9 @@ struct Along<'a> {
     step: usize,
 }
 
+/// Of fewer orders the terms of one series do not tell how they fall: one may be small by accident.
+const SHORT: usize = 4;
+
 type Coefficient<'a> = Box<dyn Fn(Balls) -> Ball + 'a>;
 
 impl<'a> Along<'a> {
@@ -75,6 +78,11 @@ impl<'a> Along<'a> {
         found.map_or_else(|| Float::new(bits), |ball| Float::with_val(bits, ball.midpoint()))
     }
 
+    /// The first term.
+    fn leading(&self, bits: u32) -> Float {
+        self.coefficient(self.first, bits) * self.power(self.first, bits)
+    }
+
     fn sample(&self, bits: u32) -> Sample {
         let orders = (self.first..self.coefficients.len()).step_by(self.step);
         let coefficients = orders.map(|n| self.coefficient(n, bits)).collect();
@@ -92,7 +100,16 @@ impl<'a> Along<'a> {
     }
 
     /// The sum, with an error that is infinite where the terms do not fall.
-    fn sum(&self, q: f64, bits: u32, method: Option<Method>, stop: &Stop) -> Option<Ball> {
+    /// The rest of a short partial sum is `least`, at least, or without one that of terms which fall like `first` from the
+    /// first one on: four times that where all others vanish.
+    fn sum(
+        &self,
+        [q, first]: [f64; 2],
+        least: Option<f64>,
+        bits: u32,
+        method: Option<Method>,
+        stop: &Stop,
+    ) -> Option<Ball> {
         let sample = remembered(|bits| Some(self.sample(bits)));
         let resummed = resum(&sample, method, bits, stop).ok().map(|r| r.outcome.estimate);
         let (value, error) = match resummed.filter(|found| found.error.is_finite()) {
@@ -100,9 +117,18 @@ impl<'a> Along<'a> {
             None => {
                 let (sizes, last) = (self.sizes(bits), self.coefficients.len() - self.first - 1);
                 let rests = last_two(&sizes).map(|(n, size)| size * power(q, last - n));
-                let none = sizes[0] * power(q, last + 1);
-                let rest = rests.reduce(f64::max).map_or(none, |t| t * SAFETY * q / (1.0 - q));
-                let rest = if q < 1.0 { rest } else { f64::INFINITY };
+                let geometric =
+                    |t: f64, q: f64| if q < 1.0 { t / (1.0 - q) } else { f64::INFINITY };
+                let none = geometric(sizes[0] * SAFETY * power(q, last + 1), q);
+                let slow = sizes[0] * power(first, last + 1);
+                let none = none.max(SAFETY * slow);
+                let rest = rests.reduce(f64::max).map_or(none, |t| geometric(t * SAFETY * q, q));
+                let least = match least {
+                    Some(least) if last < SHORT => least,
+                    None if 2 * last < SHORT => slow,
+                    _ => 0.0,
+                };
+                let rest = rest.max(least);
                 let sample = self.sample(bits);
                 let sums = partial_sums(&sample.coefficients, &sample.point, bits);
                 (sums.last()?.clone(), Float::with_val(53, rest))
@@ -144,28 +170,42 @@ pub(crate) fn exponent(
     let along = Along::of(series.iter().map(value).collect(), small);
     let sum = along.and_then(|along| {
         let q = ratio(std::iter::once(&along), small, bits);
-        along.sum(q, bits, Some(Method::Pade), stop)
+        along.sum([q; 2], None, bits, Some(Method::Pade), stop)
     });
     (sum.as_ref().and_then(|sum| Number::estimated(sum, digits)), is_stable(sum.as_ref()))
 }
 
-/// All cycles by increasing amplitude.
+/// All cycles by increasing amplitude; `near` is how the terms of the motion at an amplitude fall, and the
+/// rest of psi' there.
 pub(super) fn summed(
     found: &Cycles,
     small: &Exact,
     digits: usize,
+    near: &dyn Fn(&Float) -> [f64; 2],
     stop: &Stop,
 ) -> Vec<SummedCycle> {
-    found.cycles.iter().map(|cycle| SummedCycle::new(cycle, small, digits, stop)).collect()
+    found.cycles.iter().map(|cycle| SummedCycle::new(cycle, small, digits, near, stop)).collect()
 }
 
 impl SummedCycle {
-    fn new(cycle: &Cycle, small: &Exact, digits: usize, stop: &Stop) -> Self {
+    fn new(
+        cycle: &Cycle,
+        small: &Exact,
+        digits: usize,
+        near: &dyn Fn(&Float) -> [f64; 2],
+        stop: &Stop,
+    ) -> Self {
         let bits = bits_for(digits.saturating_add(16));
         let series = [&cycle.squared_amplitude, &cycle.frequency, &cycle.exponent];
         let along = series.map(|series| Along::new(cycle, series, small));
         let q = ratio(along.iter().flatten(), small, bits);
-        let sums = along.map(|along| along?.sum(q, bits, None, stop));
+        let amplitude = along[0].as_ref().map(|along| along.leading(bits).sqrt());
+        let [first, turn] = amplitude.map_or([f64::NAN; 2], |a| near(&a));
+        let [square, turns, exponent] = along;
+        let sum = |along: Option<Along<'_>>, least| {
+            along.and_then(|along| along.sum([q, first], least, bits, None, stop))
+        };
+        let sums = [sum(square, None), sum(turns, Some(turn)), sum(exponent, None)];
         let [square, frequency, exponent] = &sums;
         let number = |ball: &Option<Ball>| Number::estimated(ball.as_ref()?, digits);
         Self {

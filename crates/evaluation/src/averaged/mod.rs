@@ -178,7 +178,10 @@ impl Motion {
         let float = Float::with_val(bits, small.ball(Balls::new(bits)).midpoint());
         let cycles = found.cycles.as_ref().filter(|_| problem.impact.is_none());
         let degenerate = cycles.map_or_else(Vec::new, |found| found.degenerate.clone());
-        let cycles = cycles.map(|found| cycles::summed(found, &small, digits, &work.stop));
+        let full = Truncated::new(&found, &float, order);
+        let rest = Rest::new(&found, &float, false);
+        let near = |a: &Float| [rest.quotient(&full, std::slice::from_ref(a)), rest.turn(a)];
+        let cycles = cycles.map(|found| cycles::summed(found, &small, digits, &near, &work.stop));
         let drifts = found.amplitude_rate.iter().flatten().any(|(exponent, _)| *exponent != 1);
         let not_looked_for = drifts && found.cycles.is_none() && problem.impact.is_none();
         Ok(Self {

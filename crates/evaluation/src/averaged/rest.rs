@@ -143,6 +143,15 @@ impl Rest {
         [if self.is_reversible { 0.0 } else { rest }, rest]
     }
 
+    /// The rest of psi' at an amplitude, by the rates alone.
+    pub(super) fn turn(&self, a: &Float) -> f64 {
+        let near = looked_at(std::iter::once(a.clone()));
+        let [roots, quotients] = falls(&self.sizes(&near), self.frequency);
+        let all = roots.into_iter().chain(quotients.into_iter().filter(|q| *q < 1.0));
+        let q = all.fold(0.0, largest);
+        if q < 1.0 { self.rates(q, &near)[1] } else { f64::INFINITY }
+    }
+
     /// The rest of x.
     pub(super) fn displacement(&self, full: &Truncated, q: f64, amplitudes: &[Float]) -> f64 {
         let sizes = self.of_x(full, amplitudes);

@@ -220,8 +220,10 @@ impl Oscillator {
         let standing = if work.stop.asked() {
             remarks.push(Remark("stopped; cycles not reached are missing".to_owned()));
             Standing::Stopped { done: value.cycles.len() }
-        } else {
+        } else if value.unresolved.is_empty() {
             Standing::Complete
+        } else {
+            Standing::Undecided
         };
         let header = self.header(values, Some(1), "estimated", start);
         Ok(Answer { header, value, standing, remarks })

@@ -53,9 +53,14 @@ impl Present for Answer<FirstOrder> {
         }
         lines.extend(beside_cycles(found));
         if found.cycles.is_empty() && found.touching.is_empty() && found.steady.is_empty() {
+            let beside = match found.unresolved[..] {
+                [] => "",
+                _ => "; none is looked for where it is not resolved",
+            };
             lines.push((
                 "cycles".into(),
-                format!("no change of sign of a' found up to a = {}", found.amplitude).into(),
+                format!("no change of sign of a' found up to a = {}{beside}", found.amplitude)
+                    .into(),
             ));
         }
         if let Some(belt) = &found.belt {
