@@ -307,19 +307,21 @@ fn families_of_normal_modes() {
     let spring =
         Oscillator::file(include_str!("../../docs/examples/pendulum-spring.toml")).unwrap();
     let spring = spring.set("eps", "1/10").unwrap().set("amplitude", "1/2").unwrap();
-    let run = |stop| {
-        let question = Respond { order: Some(1), ..Respond::default() };
-        spring.respond(&question, &Work { stop, ..Work::default() })
-    };
-    let (stop, asked) = after(u64::MAX);
-    assert!(run(stop).is_ok());
-    let total = asked.load(Ordering::SeqCst);
-    let derived = (0..total).take_while(|&limit| match run(after(limit).0) {
-        Ok(_) => false,
-        Err(error) => {
-            assert_eq!(error.kind(), Kind::Stopped, "{limit}: {error}");
-            true
-        }
-    });
-    assert!(derived.count() > 5, "{total} questions");
+    for sweep in [None, Some(Axis::parse("amplitude=0.1..1:2").unwrap())] {
+        let run = |stop| {
+            let question = Respond { order: Some(1), sweep: sweep.clone(), ..Respond::default() };
+            spring.respond(&question, &Work { stop, ..Work::default() })
+        };
+        let (stop, asked) = after(u64::MAX);
+        assert!(run(stop).is_ok());
+        let total = asked.load(Ordering::SeqCst);
+        let derived = (0..total).take_while(|&limit| match run(after(limit).0) {
+            Ok(_) => false,
+            Err(error) => {
+                assert_eq!(error.kind(), Kind::Stopped, "{limit}: {error}");
+                true
+            }
+        });
+        assert!(derived.count() > 5, "{total} questions");
+    }
 }

@@ -10,7 +10,7 @@ use super::refusals::{
 use super::{ORDER, Respond, SEARCHES, STEPS, not_determined};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
-use crate::refusal::Refused;
+use crate::refusal::{Kind, Refusal, Refused};
 use crate::{Error, Exact, Oscillator, Remark, SlowFlow, Work};
 use lindstedt_derivation::resonance::QuadraticInvariant;
 use lindstedt_equation::Expression;
@@ -116,7 +116,12 @@ impl<'a> Subject<'a> {
         let name = |axis: &Option<Axis>| axis.as_ref().map(|axis| axis.name.clone());
         let mut swept = [name(&question.sweep), name(&question.second)];
         let case = with_values(oscillator, &swept);
-        let mut slow = resonant(&case, order, work).and_then(|slow| whole(slow, order, work));
+        let mut slow = match resonant(&case, order, work).and_then(|slow| whole(slow, order, work))
+        {
+            // What was stopped says nothing of the names.
+            Err(error) if error.kind() == Kind::Stopped => return Err(error),
+            found => found,
+        };
         let mut factor = None;
         if let Some(axis) = &question.sweep
             && axis.name != small
