@@ -107,9 +107,12 @@ impl<R: Real> Integrator<'_, R> {
         let rows = [system.walls[index].row].into_iter().chain(switches);
         for (row, place) in rows.zip([index].into_iter().chain(system.walls.len()..)) {
             let row = self.series.rows.row(row);
-            if real.sign(&row[0]) == 0 {
-                let first = row.iter().position(|c| real.log2(c) > errors);
-                self.vanishing[place] = first.unwrap_or(row.len());
+            let first = row.iter().position(|c| real.log2(c) > errors);
+            match first.unwrap_or(row.len()) {
+                0 => {}
+                // The rate of a switch is another than at rest: it may turn.
+                1 => self.vanishing[place] = 0,
+                zeros => self.vanishing[place] = zeros,
             }
         }
         self.interrupted(0, false)?;

@@ -209,6 +209,18 @@ fn rests_at_walls() {
         assert!((float(&end["t"]) - ends).abs() < 1e-11, "{way:?} {end} {ends}");
         assert_eq!(float(&found["final"]["v"]), 0.0, "{way:?}");
     }
+    // A belt that begins to move away from the wall, cos(3*pi/2) = 0, takes the body along.
+    let belt = "equation = \"x'' + 0.21*x' + 0.38*x - 0.59*sin(x) - 1.43*cos(2.48*t) + 0.81 + 0.26*sign(x - 0.27) + \
+                0.33*sign(x' - 0.41*cos(t)) = 0\"";
+    let path = wall("belt.toml", belt, "0", "-6/25");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let text = text.replace("'0'\ncrossing = 'rising'", "'-3/5'\ncrossing = 'falling'");
+    let path = folder.file("belt.toml", &text.replace("velocity = '0'", "velocity = '-3/50'"));
+    for way in [&["--digits", "12"][..], &["--digits", "25"], &["--f64"]] {
+        let found = simulate(&[&[&*path, "--until", "4.9"], way].concat());
+        let v = float(&found["final"]["v"]);
+        assert!((v - 0.41 * 4.9f64.cos()).abs() < 1e-12, "{way:?} {v}");
+    }
     let two = wall("two.toml", "equations = [\"x'' + x + y/10 = 0\", \"y'' + y = 0\"]", "1", "0");
     refuses(&[&two, "--state=-1,0,0,0"], 3, "a wall is for one unknown");
 }
