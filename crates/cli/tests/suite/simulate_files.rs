@@ -215,7 +215,7 @@ fn rests_at_walls() {
     let path = wall("belt.toml", belt, "0", "-6/25");
     let text = std::fs::read_to_string(&path).unwrap();
     let text = text.replace("'0'\ncrossing = 'rising'", "'-3/5'\ncrossing = 'falling'");
-    let path = folder.file("belt.toml", &text.replace("velocity = '0'", "velocity = '-3/50'"));
+    let path = folder.file("belt.toml", text.replace("velocity = '0'", "velocity = '-3/50'"));
     for way in [&["--digits", "12"][..], &["--digits", "25"], &["--f64"]] {
         let found = simulate(&[&[&*path, "--until", "4.9"], way].concat());
         let v = float(&found["final"]["v"]);
