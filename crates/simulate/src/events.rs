@@ -11,6 +11,8 @@ use std::ops::ControlFlow;
 
 /// The first root, and no cluster before it.
 const FIRST: (usize, AtCluster) = (1, AtCluster::Stop);
+/// All roots, past clusters where the sign stays.
+const CHANGES: (usize, AtCluster) = (usize::MAX, AtCluster::Pass);
 
 impl<R: Real> Integrator<'_, R> {
     /// The classification of the start: signs of the switches, walls.
@@ -80,8 +82,10 @@ impl<R: Real> Integrator<'_, R> {
         for (index, wall) in system.walls.iter().enumerate() {
             let d = wall.direction;
             if self.phase.contact == Some(index) {
-                let force = leading(self.series.rows.row(system.force()));
-                if force == Some(-d) {
+                let errors = self.rounding_errors();
+                let force = self.series.rows.row(system.force()).iter();
+                let force = force.map(|c| (real.log2(c) > errors).then(|| real.sign(c)));
+                if force.flatten().next() == Some(-d) {
                     return hit(Surface::Contact(index), -d);
                 }
                 continue;
@@ -176,8 +180,12 @@ impl<R: Real> Integrator<'_, R> {
         let real = &self.system.real;
         let rows = (0..self.system.tape.rows()).flat_map(|row| &self.series.rows.row(row)[..2]);
         let scale = rows.map(|c| real.log2(c)).filter(|log2| *log2 < f64::INFINITY);
-        let relative = self.log2_tolerance.max(-f64::from(real.bits()));
-        scale.fold(f64::NEG_INFINITY, f64::max) + relative + 12.0
+        scale.fold(f64::NEG_INFINITY, f64::max) + self.relative_error() + 12.0
+    }
+
+    /// log2 of the relative error of a step.
+    fn relative_error(&self) -> f64 {
+        self.log2_tolerance.max(-f64::from(self.system.real.bits()))
     }
 
     /// The first surface met in (0, h].
@@ -193,7 +201,10 @@ impl<R: Real> Integrator<'_, R> {
             let row = system.force();
             // The force itself starts anywhere, not on the surface.
             let skip = std::mem::replace(&mut self.vanishing[wall], 0);
-            let outcome = self.search(row, wall, h, FIRST);
+            let outcome = self.search(row, wall, h, CHANGES);
+            // A force that touches zero ends no rest.
+            self.finder.drop_pairs(&system.real, h, self.relative_error() / 2.0);
+            self.finder.found.retain(|root| root.after == -system.walls[wall].direction);
             self.vanishing[wall] = skip;
             self.keep(Surface::Contact(wall), outcome.err(), &mut first, &mut cluster)?;
         } else {

@@ -101,15 +101,15 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
             }
         }
         if at_cluster == AtCluster::Pass {
-            self.drop_pairs(real, length);
+            self.drop_pairs(real, length, -f64::from(real.bits() / 2));
         }
         Ok(())
     }
 
-    /// Leaves out two roots so near to each other that rounding errors may have made them of a
-    /// double one.
-    fn drop_pairs<R: Real<Element = E>>(&mut self, real: &R, length: &E) {
-        let resolved = real.log2(length) + 4.0 - f64::from(real.bits() / 2);
+    /// Leaves out two roots so near to each other that errors may have made them of a double one: with log2 `half` of
+    /// the root of the relative error.
+    pub(crate) fn drop_pairs<R: Real<Element = E>>(&mut self, real: &R, length: &E, half: f64) {
+        let resolved = real.log2(length) + 4.0 + half;
         let mut kept: Vec<Root<E>> = Vec::with_capacity(self.found.len());
         for root in self.found.drain(..) {
             match kept.last() {

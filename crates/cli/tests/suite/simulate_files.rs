@@ -221,6 +221,13 @@ fn rests_at_walls() {
         let v = float(&found["final"]["v"]);
         assert!((v - 0.41 * 4.9f64.cos()).abs() < 1e-12, "{way:?} {v}");
     }
+    // A force that touches zero without a change of its sign ends no rest.
+    let path = wall("touch.toml", "equation = \"x'' + x'/5 = cos(t)^2\"", "3/10", "0");
+    for way in [&["--digits", "12"][..], &["--digits", "22"], &["--f64"]] {
+        let found = simulate(&[&[&*path, "--until", "15"], way].concat());
+        let events = found["events"].as_array().unwrap();
+        assert!(events.len() == 1 && events[0]["kind"] == "rest", "{way:?} {events:?}");
+    }
     let two = wall("two.toml", "equations = [\"x'' + x + y/10 = 0\", \"y'' + y = 0\"]", "1", "0");
     refuses(&[&two, "--state=-1,0,0,0"], 3, "a wall is for one unknown");
 }
