@@ -197,16 +197,20 @@ fn rests_at_walls() {
         }
     }
     // Flights that end with sqrt(b/a) times their velocity, a = 5/4 on the way out and b = 3/4 on that back.
+    // At a wall off zero flights turn within rounding errors of it, long before they are short.
     let path = wall("chatter.toml", "equation = \"x'' + sign(x')/4 = 1\"", "1/2", "-1");
+    let text = std::fs::read_to_string(&path).unwrap().replace("'-1'", "'-1/2'");
+    let beside = folder.file("beside.toml", text.replace("position = '0'", "position = '1/2'"));
     let (a, b) = (1.25f64, 0.75f64);
     let leaves = 0.5 * (2.0 * b).sqrt();
     let ends =
         (2.0 / b).sqrt() + leaves * (1.0 / a + 1.0 / (a * b).sqrt()) / (1.0 - 0.5 * (b / a).sqrt());
-    for way in [&["--digits", "12"][..], &["--digits", "30"], &["--f64"]] {
-        let found = simulate(&[&[&*path, "--until", "6"], way].concat());
+    let ways = [&["--digits", "12"][..], &["--digits", "30"], &["--f64"]];
+    for (path, way) in ways.iter().flat_map(|way| [(&path, way), (&beside, way)]) {
+        let found = simulate(&[&[&**path, "--until", "6"], *way].concat());
         let events = found["events"].as_array().unwrap();
         let end = events.iter().find(|e| e["kind"] == "accumulation").unwrap();
-        assert!((float(&end["t"]) - ends).abs() < 1e-11, "{way:?} {end} {ends}");
+        assert!((float(&end["t"]) - ends).abs() < 1e-9, "{way:?} {end} {ends}");
         assert_eq!(float(&found["final"]["v"]), 0.0, "{way:?}");
     }
     // A belt that begins to move away from the wall, cos(3*pi/2) = 0, takes the body along.
