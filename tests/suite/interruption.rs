@@ -1,6 +1,8 @@
 //! Stopping within an order: after every number of questions the result is a prefix of the whole
 //! one, and the questions within one order are many. Counted, not timed.
 
+use lindstedt::evaluate::Times;
+use lindstedt::evaluate::averaged::{AveragedMotion, Start};
 use lindstedt::grid::Axis;
 use lindstedt::unstable::algebra::Stop;
 use lindstedt::unstable::derivation::averaging::{Averaging, AveragingSettings, average};
@@ -10,7 +12,7 @@ use lindstedt::unstable::series::resummation::{
 };
 use lindstedt::{
     Derivation, DerivationError as Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal,
-    Respond, Route, Work, unstable::derivation::Settings, unstable::derivation::derive,
+    Respond, Route, Standing, Work, unstable::derivation::Settings, unstable::derivation::derive,
     unstable::problems,
 };
 use rug::Float;
@@ -324,4 +326,21 @@ fn families_of_normal_modes() {
         });
         assert!(derived.count() > 5, "{total} questions");
     }
+}
+
+/// Stopped while a and psi are integrated: a time was asked for, and is not reached.
+#[test]
+fn averaged_motions() {
+    let case = Oscillator::builtin("van-der-pol").unwrap().set("eps", "1/10").unwrap();
+    let number = |text| Exact::parse(text).unwrap();
+    let start = Start::Amplitude(number("1"), number("0"));
+    let times = Some(Times::parse("0,30").unwrap());
+    let question = AveragedMotion { order: Some(3), start: Some(start), times };
+    let run = |stop| case.averaged_motion(&question, &Work { stop, ..Work::default() }).unwrap();
+    let (stop, asked) = after(u64::MAX);
+    assert_eq!(run(stop).standing, Standing::Complete);
+    let found = run(after(asked.load(Ordering::SeqCst) - 10).0);
+    let said = found.value.verdict();
+    assert!(said.contains("integrated to none of the times after 0"), "{said}");
+    assert!(matches!(found.standing, Standing::Stopped { .. }));
 }

@@ -1,10 +1,10 @@
 //! Averaged motions against the integrator.
 
 use super::support::{integrated, valued};
-use lindstedt::evaluate::averaged::{AveragedMotion, Motion, Start};
+use lindstedt::evaluate::averaged::{AveragedMotion, Ended, Motion, Start};
 use lindstedt::unstable::equation::Problem;
 use lindstedt::unstable::orbit::{self, Field, Kind, Request, prove};
-use lindstedt::{Exact, Work, unstable::problems};
+use lindstedt::{Exact, Standing, Work, unstable::problems};
 
 fn motion(problem: &Problem, order: usize, set: &[(&str, &str)], start: Start) -> Motion {
     let case = valued(problem, set);
@@ -292,4 +292,18 @@ fn the_exponent_beside_the_period() {
     assert!((sum + 0.403974056_f64).abs() < 5e-10, "{sum}");
     let (value, error, _) = exponent("2/5", 7);
     assert!((value + 0.403974101).abs() < error && error < 1e-4, "{value} {error}");
+}
+
+/// An averaged motion that is not slow (a' of order 4 grows with a^17) ends after some thousand steps.
+#[test]
+fn a_motion_that_is_not_slow() {
+    let equation = "x'' + x - eps*(x'/4 + 29/6*x^4*x' + x^2*x' - x*x'^2/2) = 0";
+    let case = lindstedt::Oscillator::parse(equation).unwrap().set("eps", "1/20").unwrap();
+    let start = Start::Amplitude(Exact::parse("2").unwrap(), Exact::parse("0").unwrap());
+    let times = Some(lindstedt::evaluate::Times::parse("0,40").unwrap());
+    let question = AveragedMotion { order: Some(4), start: Some(start), times };
+    let found = case.averaged_motion(&question, &work()).unwrap();
+    assert_eq!(found.standing, Standing::Undecided);
+    let ended = found.value.ended;
+    assert!(matches!(ended, Some(Ended::Fast { time }) if (0.3..0.4).contains(&time)), "{ended:?}");
 }

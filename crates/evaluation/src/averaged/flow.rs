@@ -1,12 +1,33 @@
 //! a(t) and psi(t): exponentials where the rates are linear, else integrated.
 
 use super::truncated::Truncated;
-use lindstedt_simulate::{Digits, Integrator, Settings, SimulateError, Trajectory};
+use lindstedt_simulate::{Digits, Integrator, Report, Settings, SimulateError, Trajectory};
 use rug::Float;
 use std::ops::ControlFlow;
 
 /// Digits of the second integration beyond those of the first.
 const MORE: u32 = 8;
+
+/// Steps in one period 2 pi/omega_0, on the average of an integration and after as many steps, beyond which a and
+/// psi are not slow: a step is a fixed part of the radius of convergence.
+const FAST: f64 = 1000.0;
+
+/// Why an averaged motion ends.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Ended {
+    /// The integration of a and psi.
+    #[error(transparent)]
+    Integration(#[from] SimulateError),
+    /// a and psi change within a small part of the period over which they are averaged.
+    #[error(
+        "near t = {time:.6} a and psi change within a thousandth of a period, and averaging supposes that they are slow"
+    )]
+    Fast {
+        /// Where.
+        time: f64,
+    },
+}
 
 /// a and psi at one time.
 #[derive(Clone, Debug)]
@@ -22,7 +43,7 @@ pub(super) struct Flow {
     /// In the order of the times; nothing beyond the end of the integration.
     pub states: Vec<Option<State>>,
     /// Why it ended early.
-    pub ended: Option<SimulateError>,
+    pub ended: Option<Ended>,
 }
 
 impl Flow {
@@ -72,7 +93,7 @@ fn integrate(
     (times, backward): (&[Float], bool),
     digits: u32,
     goes_on: &mut dyn FnMut() -> bool,
-) -> (Values, Option<SimulateError>) {
+) -> (Values, Option<Ended>) {
     let real = Digits::for_digits(digits);
     let mut trajectory = Trajectory::new(real);
     let last = times.iter().fold(Float::new(53), |top, t| top.max(t));
@@ -103,16 +124,22 @@ fn run(
     (last, backward): (&Float, bool),
     digits: u32,
     (trajectory, goes_on): (&mut Trajectory<Digits>, &mut dyn FnMut() -> bool),
-) -> Result<(), SimulateError> {
+) -> Result<(), Ended> {
     let real = Digits::for_digits(digits);
     let bits = real_bits(&real);
     let compiled = system.system(real, backward)?;
     let start: Vec<Float> = system.start.iter().map(|x| Float::with_val(bits, x)).collect();
     let settings = Settings::for_digits(digits);
     let mut flow = Integrator::new(&compiled, &Float::new(bits), &start, settings)?;
+    let (mut steps, mut fast) = (0.0, None);
     flow.advance(&Float::with_val(bits, last), &mut |report| {
         let _ = trajectory.record(report);
-        if goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        if let Report::Segment(segment) = report {
+            let time = segment.start.to_f64();
+            steps += 1.0;
+            fast = (steps > FAST * (1.0 + time / system.period())).then_some(time);
+        }
+        if fast.is_none() && goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     })?;
-    Ok(())
+    fast.map_or(Ok(()), |time| Err(Ended::Fast { time: if backward { -time } else { time } }))
 }

@@ -22,6 +22,7 @@ use crate::few::plain;
 use crate::setting::{check_names, small_value};
 pub use cycles::SummedCycle;
 pub(crate) use cycles::exponent;
+pub use flow::Ended;
 use flow::Flow;
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::averaging::numbers::{Numbers, numbers};
@@ -82,7 +83,7 @@ pub struct Motion {
     /// the times evaluated; nothing while no time but 0 was, 0 where a is an exponential.
     pub integration_error: Option<f64>,
     /// Why the integration ended before the last time, if it did.
-    pub ended: Option<lindstedt_simulate::SimulateError>,
+    pub ended: Option<Ended>,
     /// Whether delayed values occur: then the past before t = 0 is the averaged motion's own.
     pub is_delayed: bool,
     /// Whether there is a wall, which the averaged motion does not see: it holds between impacts.
@@ -98,6 +99,8 @@ pub struct Motion {
     pub not_looked_for: bool,
     full: Truncated,
     rest: Rest,
+    /// Whether a time other than 0 was asked for.
+    goes_on: bool,
     /// What the start may be off by, where it was computed from x and x'.
     start_error: [f64; 2],
     digits: usize,
@@ -244,6 +247,7 @@ impl Motion {
             not_looked_for: false,
             full,
             rest,
+            goes_on: false,
             start_error,
             digits,
         })
@@ -275,6 +279,7 @@ impl Motion {
         let bits = self.full.start[0].prec();
         let float = |value: &Exact| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let floats: Vec<Float> = times.iter().map(float).collect();
+        self.goes_on |= floats.iter().any(|time| !time.is_zero());
         let mut flow = |system: &Truncated| Flow::new(system, &floats, self.digits, &mut goes_on);
         let found = flow(&self.full);
         let amplitudes = found.states.iter().flatten().map(|state| state.values[0].clone());
@@ -370,7 +375,7 @@ impl Motion {
                     self.digits
                 ),
                 Some(error) => format!("a and psi are integrated, error {error:.0e}"),
-                None if self.ended.is_some() => {
+                None if self.goes_on => {
                     "a and psi are integrated to none of the times after 0".to_owned()
                 }
                 None => "a and psi are not integrated: no time after 0 was asked for".to_owned(),

@@ -104,6 +104,11 @@ impl Truncated {
         changed
     }
 
+    /// 2 pi/omega_0, over which is averaged.
+    pub(super) fn period(&self) -> f64 {
+        std::f64::consts::TAU / self.frequency.to_f64().abs()
+    }
+
     /// R and psi' where a' = R a and psi' is free of a.
     pub(super) fn linear(&self) -> Option<[Float; 2]> {
         let only = |terms: &Terms, exponent: i32| {

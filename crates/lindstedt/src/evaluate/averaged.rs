@@ -5,7 +5,7 @@ use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 use lindstedt_equation::Condition;
-pub use lindstedt_evaluation::averaged::{Moment, Motion, Quantity, Start, SummedCycle};
+pub use lindstedt_evaluation::averaged::{Ended, Moment, Motion, Quantity, Start, SummedCycle};
 use rug::Rational;
 use std::time::Instant;
 
@@ -125,7 +125,7 @@ fn standing(motion: &Motion, order: usize, times: usize) -> Standing {
     let done = motion.moments.as_ref().map_or(0, Vec::len);
     match &motion.ended {
         _ if motion.order == order && done == times => Standing::Complete,
-        Some(reason) if reason.kind() == Kind::NoAnswer => Standing::NoAnswer,
+        Some(Ended::Integration(reason)) if reason.kind() == Kind::NoAnswer => Standing::NoAnswer,
         Some(_) => Standing::Undecided,
         None => Standing::Stopped { done },
     }
