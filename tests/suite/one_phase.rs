@@ -51,6 +51,21 @@ fn odd_laws_have_their_exact_rates() {
     }
 }
 
+/// A root within a turn has an infinite slope, and is no pole: quadrature in 30 digits, split there.
+#[test]
+fn roots_within_a_turn() {
+    for (power, largest, exact) in [
+        ("1/3", "2", -0.717_434_325_889_681),
+        ("1/3", "1/2", -0.311_504_900_990_815),
+        ("1/10", "2", -0.649_030_889_887_980),
+    ] {
+        let law = format!("sign(x' + 2/5)*abs(x' + 2/5)^({power})");
+        let found = first_order(&format!("x'' + x + eps*{law} = 0"), largest);
+        assert!(found.unresolved.is_empty(), "{:?}", found.unresolved);
+        assert_is(&found.amplitude_rate, exact);
+    }
+}
+
 /// Intervals end where the amplitudes asked for end, though the search goes on by a cell.
 #[test]
 fn nothing_is_said_beyond_the_amplitudes_asked_for() {

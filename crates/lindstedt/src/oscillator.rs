@@ -424,7 +424,8 @@ impl Oscillator {
             return Ok(());
         }
         let message = "this question is for one unknown, and there are several equations";
-        let hint = "`lindstedt derive` averages them, `simulate` integrates them";
+        let hint = "`lindstedt derive` averages them, `respond` finds their steady motions, `evaluate --prove` encloses \
+                    periodic orbits, `simulate` integrates them";
         Err(Refused::no_answer("several-unknowns", message, hint).into())
     }
 

@@ -22,6 +22,11 @@ impl<'a> Point<'a> {
         Self { parameter, ..self }
     }
 
+    /// The value of a bound expression, where it is finite; its slopes need not be, as those of |w|^(1/3) at w = 0.
+    pub fn value(&mut self, e: &Expression) -> Option<f64> {
+        e.evaluate(self).map(|local| local[0]).filter(|value| value.is_finite())
+    }
+
     /// The value of a bound expression with its derivatives by x and by x' (those of a sign are zero); nothing where
     /// one of them is not finite.
     pub fn local(&mut self, e: &Expression) -> Option<Local> {

@@ -3,7 +3,7 @@
 use super::polar::{Polar, PolarTerm};
 use super::{NormalMode, SlowFlow, Sought, SoughtBranch, Terms};
 use lindstedt_coeff::print::Style;
-use lindstedt_equation::Condition;
+use lindstedt_equation::{Condition, Problem};
 use lindstedt_number::Object;
 use lindstedt_phase::amplitudes::AmplitudeTerm;
 use rug::Rational;
@@ -123,6 +123,11 @@ fn waves<'a>(symbols: &'a [String], orders: &[Vec<PolarTerm>]) -> Vec<Vec<Wave<'
     orders.iter().map(|terms| terms.iter().map(one).collect()).collect()
 }
 
+/// The unknown that a row of shapes is of.
+fn row_names(problem: &Problem, rows: usize) -> Vec<String> {
+    (0..rows).map(|j| problem.unknown(j)).collect()
+}
+
 impl Serialize for NormalMode {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let texts = |list: &[Rational]| list.iter().map(|q| self.number(q)).collect::<Vec<_>>();
@@ -139,6 +144,7 @@ impl Serialize for NormalMode {
         map.serialize_entry("ratios", &texts(&self.ratios))?;
         let shapes: Vec<_> = self.shapes.iter().map(|row| texts(row)).collect();
         map.serialize_entry("shapes", &shapes)?;
+        map.serialize_entry("shape_rows", &row_names(&self.problem, shapes.len()))?;
         map.serialize_entry("symbols", &self.symbols)?;
         map.serialize_entry("frequency_squared", &orders(&self.frequency_squared))?;
         map.serialize_entry("growth_rate", &orders(&self.growth))?;
@@ -216,6 +222,9 @@ impl Serialize for SlowFlow {
         let shapes = system.shapes.as_ref();
         let shapes = shapes.map(|rows| rows.iter().map(of_modes).collect::<Vec<_>>());
         map.serialize_entry("shapes", &shapes)?;
+        if let Some(shapes) = &shapes {
+            map.serialize_entry("shape_rows", &row_names(&self.problem, shapes.len()))?;
+        }
         let forces: Vec<_> = (0..system.forces.len()).map(|l| Force::of(self, &names, l)).collect();
         match &forces[..] {
             [] => map.serialize_entry("force", "0")?,

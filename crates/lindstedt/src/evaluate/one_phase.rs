@@ -120,7 +120,8 @@ impl FirstOrder {
             }
             None => {
                 let message = "the integral of the law over the phase does not converge at this amplitude: it has no \
-                               finite value on the way, a pole that is not integrable, or oscillates too fast";
+                               finite value on the way, a pole (within a quarter of a turn an integrable one, too), or \
+                               oscillates too fast";
                 Refused::no_answer(
                     "no-value",
                     message,

@@ -105,7 +105,7 @@ impl OnePhase {
             let (sin, cos) = psi.sin_cos();
             Point::at(0.0, a * cos, -a * self.frequency * sin).with(parameter)
         };
-        let value = |e: &Expression, psi: f64| Some(point(psi).local(e)?[0]);
+        let value = |e: &Expression, psi: f64| point(psi).value(e);
         let mut cuts: Vec<f64> = (0..=4).map(|quarter| f64::from(quarter) * PI / 2.0).collect();
         // Off the symmetric points, where zeros like to be, and these as well: two zeros about a turn are close.
         let between = (0..=CELLS).map(|n| 2.0 * PI * (f64::from(n) + 0.137) / f64::from(CELLS));
@@ -310,9 +310,9 @@ impl OnePhase {
         let near = 1e-9 * speed.abs();
         let parameter = self.belt.as_deref().map(|name| (name, self.value));
         let friction = [x, -x].into_iter().flat_map(|x| {
-            [near, -near].map(|w| Point::at(0.0, x, speed + w).with(parameter).local(&self.law))
+            [near, -near].map(|w| Point::at(0.0, x, speed + w).with(parameter).value(&self.law))
         });
-        let largest = friction.flatten().map(|g| g[0].abs()).fold(0.0, f64::max);
+        let largest = friction.flatten().map(f64::abs).fold(0.0, f64::max);
         self.frequency.powi(2) * x <= eps.abs() * largest
     }
 }
