@@ -102,4 +102,4 @@ pub use saddle::{Saddle, saddle};
 pub use system::{Model, System};
 pub use tangency::{Homoclinic, Loop, Return, Tangency};
 pub use trajectory::Trajectory;
-pub use zero_one::{ZeroOne, is_in_bands, is_stationary, zero_one};
+pub use zero_one::{ZeroOne, is_in_bands, is_stationary, recurs, zero_one};

@@ -106,14 +106,36 @@ const SPREAD: f64 = 8.0;
 pub fn is_stationary(series: &[f64]) -> bool {
     let motion = about_mean(series);
     let (first, second) = motion.split_at(motion.len() / 2);
-    let correlation = |half: &[f64], lag: usize| {
-        let pairs = half.iter().zip(half.iter().skip(lag));
-        pairs.map(|(a, b)| a * b).sum::<f64>() / half.len().saturating_sub(lag) as f64
-    };
     let mean = |half: &[f64]| half.iter().sum::<f64>() / half.len() as f64;
-    let (limit, square) = (SPREAD / (motion.len() as f64).sqrt(), correlation(&motion, 0));
-    let near = |lag| (correlation(first, lag) - correlation(second, lag)).abs() <= limit * square;
+    let (limit, square) = (SPREAD / (motion.len() as f64).sqrt(), autocorrelation(&motion, 0));
+    let near =
+        |lag| (autocorrelation(first, lag) - autocorrelation(second, lag)).abs() <= limit * square;
     (mean(first) - mean(second)).abs() <= limit * square.sqrt() && (0..=LAGS).all(near)
+}
+
+/// Of what returns to itself: a chaotic part of a variance below a twentieth is not seen.
+const RECURRENT: f64 = 0.95;
+
+/// Whether the series returns to itself after a number of points beyond those of the 0-1 test, |C(k)| > 0.95 C(0) for one
+/// k = N/10..=N/2: a motion of few frequencies does, whose harmonics may have a large K where the points are few, since near each
+/// of them M_c grows at first; the autocorrelations of chaos decay. Cost: O(N^2).
+///
+/// ```
+/// let slow: Vec<f64> = (0..400).map(|n| (0.02 * f64::from(n)).cos()).collect();
+/// assert!(lindstedt_simulate::recurs(&slow));
+/// ```
+#[must_use]
+pub fn recurs(series: &[f64]) -> bool {
+    let motion = about_mean(series);
+    let limit = RECURRENT * autocorrelation(&motion, 0);
+    let mut lags = motion.len() / 10..=motion.len() / 2;
+    lags.any(|lag| autocorrelation(&motion, lag).abs() > limit)
+}
+
+/// C(k).
+fn autocorrelation(motion: &[f64], lag: usize) -> f64 {
+    let pairs = motion.iter().zip(motion.iter().skip(lag));
+    pairs.map(|(a, b)| a * b).sum::<f64>() / motion.len().saturating_sub(lag) as f64
 }
 
 fn about_mean(series: &[f64]) -> Vec<f64> {

@@ -9,7 +9,7 @@ use lindstedt_equation::Expression;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
     Doubles, LyapunovExponent, LyapunovSettings, PoincareMap, Section, Settings, SimulateError,
-    Surface, ZeroOne, is_in_bands, is_stationary, largest_lyapunov_exponent, zero_one,
+    Surface, ZeroOne, is_in_bands, is_stationary, largest_lyapunov_exponent, recurs, zero_one,
 };
 use rug::Float;
 use serde::Serialize;
@@ -89,6 +89,9 @@ pub struct Test {
     /// Whether the two halves of these points are alike.
     #[serde(skip)]
     stationary: bool,
+    /// Whether they return to themselves.
+    #[serde(skip)]
+    recurs: bool,
 }
 
 /// The 0-1 tests.
@@ -312,7 +315,8 @@ impl Run<'_> {
                     let (low, high) = found.quartiles;
                     let number = number(found.k, (high - low) / 2.0);
                     let stationary = stationary && is_stationary(&thinned);
-                    k.push(Test { k: number, every, quartiles: [low, high], found, stationary });
+                    let (quartiles, recurs) = ([low, high], recurs(&thinned));
+                    k.push(Test { k: number, every, quartiles, found, stationary, recurs });
                 }
                 None if self.work.stop.asked() => return Err(stopped(SimulateError::Stopped)),
                 None => {}
@@ -369,6 +373,9 @@ impl Run<'_> {
             _ if self.setup.linear => "says nothing of a linear equation, which is not chaotic",
             ZeroOne { k, .. } if k >= 0.3 && !test.stationary => {
                 "undecided, the two halves of the series differ (a transient? --skip leaves it out)"
+            }
+            ZeroOne { k, .. } if k >= 0.3 && test.recurs => {
+                "undecided, the series returns to itself, as that of few frequencies does (more --periods tell)"
             }
             // One wide distribution of K is no growth at all frequencies.
             ZeroOne { k, quartiles } if k > 0.8 && quartiles.0 > 0.5 => "chaotic",

@@ -1,6 +1,6 @@
 //! The 0-1 test on maps that are known to be regular or chaotic.
 
-use lindstedt_simulate::{go_on, is_stationary, zero_one};
+use lindstedt_simulate::{go_on, is_stationary, recurs, zero_one};
 
 fn logistic(r: f64, count: usize) -> Vec<f64> {
     let mut x = 0.3;
@@ -67,4 +67,25 @@ fn a_slow_transient_is_no_stationary_series() {
     assert!(!is_stationary(&transient));
     assert!(!is_stationary(&(0..2000).map(f64::from).collect::<Vec<_>>()));
     assert!(is_stationary(&[1.0; 100]));
+}
+
+/// Of few points of a rotation with harmonics K is large, since near each of them the displacements grow at first; it returns
+/// to itself, as chaos does not.
+#[test]
+fn rotations_return_to_themselves() {
+    let turn = |n: u32| std::f64::consts::TAU * f64::from(n) / 6.5 + 1.0;
+    let wave = |t: f64| t.cos() + 0.6 * (2.0 * t + 1.0).cos() + 0.36 * (3.0 * t + 2.0).cos();
+    let rotation: Vec<f64> = (0..134).map(|n| wave(turn(n))).collect();
+    let test = zero_one(&rotation, &go_on).unwrap();
+    assert!(test.k > 0.95 && test.quartiles.0 > 0.5 && is_stationary(&rotation));
+    assert!(recurs(&rotation));
+    let mut x = 0.3;
+    let mut logistic = || {
+        x = 3.9 * x * (1.0 - x);
+        x
+    };
+    for points in [100, 400, 2000] {
+        let series: Vec<f64> = (0..points).map(|_| logistic()).collect();
+        assert!(!recurs(&series), "{points}");
+    }
 }
