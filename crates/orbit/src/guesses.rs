@@ -16,7 +16,7 @@ const PHASES: u32 = 6;
 /// Two guesses nearer than this, relatively, are one.
 const SAME: f64 = 1e-6;
 /// An oscillation has this share of its sum of harmonics in those that oscillate.
-const OSCILLATES: f64 = 1e-3;
+const OSCILLATES: f64 = 1e-6;
 /// The grid on which equilibria are looked for: up to |x| = 16.
 const STEP: f64 = 1.0 / 16.0;
 const CELLS: i32 = 256;

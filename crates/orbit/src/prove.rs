@@ -22,6 +22,8 @@ const NEAR: f64 = 0.1;
 /// The highest quarter of the modes carries less than this fraction when there are enough.
 const RESOLVED: f64 = 1e-4;
 const FINELY: f64 = 1e-9;
+/// Harmonics below this fraction of all that oscillate are none.
+const REPEATED: f64 = 1e-9;
 /// Bits beyond the digits: weights of the modes, sums.
 const GUARD_BITS: u32 = 44;
 /// Bits of the steps that estimate the error.
@@ -208,10 +210,29 @@ pub fn approximate(
     }
 }
 
-/// Harmonic balance with as many modes as resolve the orbit. Where x(0) is given, first with the
+/// Harmonic balance with as many modes as resolve the orbit, over its own period and no multiple of it.
+fn resolved(task: &Task, guess: Centre, request: &Request) -> Result<(Centre, usize), Failure> {
+    let (centre, modes) = near_guess(task, guess, request)?;
+    let sizes = sizes(&centre);
+    let seen = REPEATED * sizes.iter().skip(1).sum::<f64>();
+    let harmonics: Vec<usize> = (1..sizes.len()).filter(|k| sizes[*k] > seen).collect();
+    let divides = |m: &usize| harmonics.iter().all(|k| k % m == 0);
+    match (2..=harmonics.first().map_or(0, |k| *k)).rev().find(divides) {
+        Some(repeats) if task.is_free() => {
+            let parts = centre.doubles().into_iter();
+            let parts: Vec<_> = parts.map(|c| c.into_iter().step_by(repeats).collect()).collect();
+            let frequency = centre.frequency.to_f64() * repeats as f64;
+            let once = Centre::from_doubles(FAST_BITS, frequency, &parts);
+            balanced(task, once, RESOLVED, request)
+        }
+        _ => Ok((centre, modes)),
+    }
+}
+
+/// Where x(0) is given, first with the
 /// frequency of the guess in its place: near a separatrix the period hangs on the last digits of
 /// x(0), not the other way round.
-fn resolved(task: &Task, guess: Centre, request: &Request) -> Result<(Centre, usize), Failure> {
+fn near_guess(task: &Task, guess: Centre, request: &Request) -> Result<(Centre, usize), Failure> {
     if task.rows.condition == Some(Condition::AtZero) {
         let near = |c: &Centre| {
             let miss = task.condition(c).to_f64().abs();

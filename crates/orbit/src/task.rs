@@ -150,6 +150,9 @@ impl Task {
             field = field.over(periods);
         } else {
             modes = in_phase(modes);
+            if condition == Some(Condition::AtZero) {
+                begin_near(&mut modes, value.to_f64());
+            }
         }
         if !(frequency.is_finite() && frequency > 0.0) {
             return Err(Failure::NoStart);
@@ -214,6 +217,16 @@ const MOST_PERIODS: u32 = 100;
 const NOISE: f64 = 2e-2;
 /// Where no unknown frequency tells that a response keeps a symmetry, they must be this small.
 const QUIET: f64 = 1e-6;
+
+/// Where x(T/2) is nearer to the value than x(0), the orbit half a period later.
+fn begin_near(modes: &mut [Vec<Complex<f64>>], value: f64) {
+    let part = |odd: usize| modes[0].iter().skip(odd).step_by(2).map(|c| 2.0 * c.re).sum::<f64>();
+    let (even, odd) = (part(0) - modes[0][0].re, part(1));
+    if (even - odd - value).abs() < (even + odd - value).abs() {
+        let turned = modes.iter_mut().flat_map(|unknown| unknown.iter_mut().skip(1).step_by(2));
+        turned.for_each(|c| *c = -*c);
+    }
+}
 
 /// The coefficients of all unknowns, as many of each.
 fn aligned(starts: &[Start], unknowns: usize) -> Result<Vec<Vec<Complex<f64>>>, Failure> {

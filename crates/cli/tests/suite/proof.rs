@@ -122,6 +122,26 @@ fn limit_cycles_are_proved_without_a_small_parameter() {
     assert!((largest(&two[0]) - 2.045).abs() < 0.01 && (largest(&two[1]) - 6.916).abs() < 0.1);
 }
 
+/// Motions about x = 1 of x'' - x + x^3 = 0, from their least x or their largest: x = b dn(b t/sqrt 2 | m),
+/// m = 2 - 2/b^2, b the largest x, over one period 2 sqrt(2) K(m)/b and no multiple of it; and of a stiff cycle.
+#[test]
+fn one_period_from_either_turning_point() {
+    for (amplitude, period) in [
+        ("1/1000", 17.281_252_191_234_7),
+        ("1/5", 6.756_369_163_739_06),
+        ("7/5", 6.756_369_163_739_06),
+        ("2/5", 5.513_202_967_014_558),
+        ("1/2", 5.156_165_363_816_425),
+        ("1001/1000", 4.442_886_273_660_869),
+    ] {
+        let found = proved("x'' - x + x^3 = 0", &[("amplitude", amplitude)]).unwrap();
+        let gap = middle(&found.period).to_f64() - period;
+        assert!(gap.abs() < 1e-12, "{amplitude} {gap}");
+    }
+    let stiff = proved("x'' + x - 8*(1 - x^2)*x' = 0", &[]).unwrap();
+    assert!((middle(&stiff.period).to_f64() - 16.038_176_232_180_5).abs() < 1e-11);
+}
+
 fn family(equation: &str, values: &[(&str, &str)], sweep: &str) -> (ProvedFamily, Standing) {
     let axis = Axis::parse(sweep).unwrap();
     let work = Work { digits: 12, ..Work::default() };

@@ -5,9 +5,9 @@
 //! cycle is approached backwards in time.
 
 use super::setting::Setting;
-use crate::Error;
+use crate::{Error, Exact};
 use lindstedt_algebra::Stop;
-use lindstedt_equation::{AmplitudeRole, Condition, Expression};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
 use lindstedt_orbit::Start;
@@ -15,8 +15,9 @@ use lindstedt_simulate::{
     Doubles, Event, EventKind, Integrator, Model, Parameters, Real, Report, Settings, System,
     Trajectory,
 };
-use rug::Float;
+use rug::{Float, Rational};
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// Turns after which a limit cycle must have been reached.
@@ -30,9 +31,18 @@ const SAMPLES: usize = 256;
 
 /// The motion of a problem with a value for everything.
 pub(crate) struct TimeDomain<'a> {
-    setting: &'a Setting,
+    subject: Subject<'a>,
     /// Whether time runs backwards.
     reversed: bool,
+}
+
+/// What moves.
+#[derive(Clone, Copy)]
+enum Subject<'a> {
+    /// What an expansion is made of.
+    Expanded(&'a Setting),
+    /// An equation with its values, from x(0) at rest or into a limit cycle.
+    Equation(&'a Problem, &'a BTreeMap<String, Rational>, Option<&'a Rational>),
 }
 
 /// A turn of the motion.
@@ -46,8 +56,22 @@ pub(crate) struct Turn {
 impl<'a> TimeDomain<'a> {
     /// The motion in the direction of time in which it approaches a limit cycle.
     pub fn new(setting: &'a Setting, stop: &Stop) -> Self {
-        let [forwards, backwards] = [false, true].map(|reversed| Self { setting, reversed });
-        if setting.condition != Condition::LimitCycle {
+        Self::of(Subject::Expanded(setting), stop)
+    }
+
+    /// The motion of an equation that need have no expansion: from x(0) at rest, or without one into a limit cycle.
+    pub fn of_equation(
+        problem: &'a Problem,
+        values: &'a BTreeMap<String, Rational>,
+        start: Option<&'a Rational>,
+        stop: &Stop,
+    ) -> Self {
+        Self::of(Subject::Equation(problem, values, start), stop)
+    }
+
+    fn of(subject: Subject<'a>, stop: &Stop) -> Self {
+        let [forwards, backwards] = [false, true].map(|reversed| Self { subject, reversed });
+        if forwards.condition() != Condition::LimitCycle {
             return forwards;
         }
         let settles = |motion: &Self| motion.turn(&Doubles, ROUGH, stop).is_ok();
@@ -68,40 +92,71 @@ impl<'a> TimeDomain<'a> {
         if self.reversed {
             samples.reverse();
         }
-        if self.setting.problem.amplitude == AmplitudeRole::InSmallParameter {
+        match self.subject {
             // The equation that was integrated is that of x/a.
-            let amplitude = self.setting.amplitude.ball(Balls::new(64)).midpoint().to_f64();
-            samples.iter_mut().for_each(|x| *x *= amplitude);
+            Subject::Expanded(setting)
+                if setting.problem.amplitude == AmplitudeRole::InSmallParameter =>
+            {
+                let amplitude = setting.amplitude.ball(Balls::new(64)).midpoint().to_f64();
+                samples.iter_mut().for_each(|x| *x *= amplitude);
+            }
+            _ => {}
         }
         Ok(Start::from_samples(period, &samples))
     }
 
+    fn condition(&self) -> Condition {
+        match self.subject {
+            Subject::Expanded(setting) => setting.condition,
+            Subject::Equation(_, _, None) => Condition::LimitCycle,
+            Subject::Equation(_, _, Some(_)) => Condition::InitialAmplitude,
+        }
+    }
+
+    /// The values of the parameters and the first x.
+    fn values(&self, balls: Balls) -> (Parameters, Float) {
+        let mut parameters = Parameters::new();
+        let float = |exact: &Exact| exact.ball(balls).midpoint().clone();
+        let cycle = || Float::with_val(53, 2);
+        match self.subject {
+            Subject::Expanded(setting) => {
+                let problem = &setting.problem;
+                for (name, value) in setting.at.iter().filter(|(name, _)| *name != *problem.small) {
+                    parameters.set(name, value.clone());
+                }
+                match setting.rational_small() {
+                    Some(small) => parameters.set(&problem.small, small),
+                    None => parameters.set(&problem.small, setting.small(balls).midpoint().clone()),
+                }
+                // The pendulum's equation is in y = x/a, Duffing's in rho = eps a^2; those of files are in x.
+                let start = match (setting.condition, problem.amplitude) {
+                    (Condition::LimitCycle, _) => cycle(),
+                    (_, AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::Scaled) => {
+                        float(&setting.amplitude)
+                    }
+                    _ => Float::with_val(53, 1),
+                };
+                (parameters, start)
+            }
+            Subject::Equation(_, values, start) => {
+                values.iter().for_each(|(name, value)| parameters.set(name, value.clone()));
+                (parameters, start.map_or_else(cycle, |x| float(&Exact::Rational(x.clone()))))
+            }
+        }
+    }
+
     /// The equation with its values, and where the motion starts.
     fn system<R: Real>(&self, real: &R) -> Result<(System<R>, [R::Element; 2]), Error> {
-        let (setting, bits) = (self.setting, real.bits() + 16);
-        let mut problem = setting.problem.clone();
+        let mut problem = match self.subject {
+            Subject::Expanded(setting) => setting.problem.clone(),
+            Subject::Equation(problem, ..) => problem.clone(),
+        };
         if self.reversed {
             let turned =
                 |leaf: &Expression| (*leaf == Expression::VELOCITY).then(|| -Expression::VELOCITY);
             problem.equation = problem.equation.map(&turned);
         }
-        let balls = Balls::new(bits);
-        let mut parameters = Parameters::new();
-        for (name, value) in setting.at.iter().filter(|(name, _)| *name != *problem.small) {
-            parameters.set(name, value.clone());
-        }
-        match setting.rational_small() {
-            Some(small) => parameters.set(&problem.small, small),
-            None => parameters.set(&problem.small, setting.small(balls).midpoint().clone()),
-        }
-        // The pendulum's equation is in y = x/a, Duffing's in rho = eps a^2; those of files are in x.
-        let start = match (setting.condition, problem.amplitude) {
-            (Condition::LimitCycle, _) => Float::with_val(bits, 2),
-            (_, AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::Scaled) => {
-                Float::with_val(bits, setting.amplitude.ball(balls).midpoint())
-            }
-            _ => Float::with_val(bits, 1),
-        };
+        let (parameters, start) = self.values(Balls::new(real.bits() + 16));
         let model = Model::of_problem(&problem)?.with_section(Expression::VELOCITY);
         let system = model.compile(real.clone(), &parameters)?;
         Ok((system, [real.float(&start), real.zero()]))
@@ -111,7 +166,7 @@ impl<'a> TimeDomain<'a> {
     /// that: the period is the more exact one of both.
     pub fn turn<R: Real>(&self, real: &R, digits: u32, stop: &Stop) -> Result<Turn, Error> {
         let bits = real.bits() + 16;
-        let cycle = match self.setting.condition {
+        let cycle = match self.condition() {
             Condition::LimitCycle => true,
             Condition::InitialAmplitude => false,
             // Where the solution starts is part of the expansion.
@@ -145,22 +200,31 @@ impl<'a> TimeDomain<'a> {
             }
             found.is_some() || turns >= MOST_TURNS
         };
+        // The first turning point is on the other side than the start at rest, which may be the least x.
+        let side = Cell::new(cycle.then_some(false));
+        let ends_turn = |kind| match (kind, side.get()) {
+            (EventKind::Section { section: 0, rising }, Some(side)) => rising == side,
+            (EventKind::Section { section: 0, rising }, None) => {
+                side.set(Some(!rising));
+                false
+            }
+            _ => false,
+        };
         flow.advance(&real.double(1e6), &mut |report| {
             let busy = matches!(report, Report::Busy);
             segments.set(segments.get() + u32::from(!busy));
             let ends = stop.asked()
                 || segments.get() > MOST_SEGMENTS
-                || matches!(report, Report::Event(event)
-                    if event.kind == (EventKind::Section { section: 0, rising: false })
-                        && observe(event));
+                || matches!(report, Report::Event(event) if ends_turn(event.kind) && observe(event));
             if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         found.ok_or_else(|| {
             if stop.asked() {
                 return ExpandError::Interrupted { order: 0 }.into();
             }
-            let small = self.setting.small(Balls::new(bits)).midpoint().to_f64();
-            let (parameter, value) = (self.setting.problem.small.to_string(), small.to_string());
+            let Subject::Expanded(setting) = self.subject else { return Error::NoValue };
+            let small = setting.small(Balls::new(bits)).midpoint().to_f64();
+            let (parameter, value) = (setting.problem.small.to_string(), small.to_string());
             Error::NoPeriodicOrbit { parameter, value }
         })
     }

@@ -92,7 +92,7 @@ impl Oscillator {
     }
 
     /// The rational values of all names in the equation of x itself.
-    fn coefficients_of_proof(&self) -> Result<BTreeMap<String, Rational>, Error> {
+    pub(super) fn coefficients_of_proof(&self) -> Result<BTreeMap<String, Rational>, Error> {
         let mut values: BTreeMap<String, Rational> = self
             .values_of_proof()?
             .into_iter()

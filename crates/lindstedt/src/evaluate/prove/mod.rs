@@ -160,8 +160,17 @@ impl Oscillator {
     /// A guess from the closed form or from the motion in the time domain.
     pub(super) fn by_motion(&self, wanted: &Wanted, stop: &Stop) -> Option<Start> {
         let moving = || {
-            let setting = self.setting().ok()?;
-            wanted.start(&TimeDomain::new(&setting, stop), stop).ok()
+            if self.has_expansion() {
+                return TimeDomain::new(&self.setting().ok()?, stop).start(stop).ok();
+            }
+            let values = self.coefficients_of_proof().ok()?;
+            let start = match &wanted.kind {
+                Kind::InitialAmplitude(a) => Some(a),
+                Kind::LimitCycle => None,
+                _ => return None,
+            };
+            let motion = TimeDomain::of_equation(self.problem(), &values, start, stop);
+            motion.start(stop).ok()
         };
         wanted.closed.clone().or_else(moving)
     }
