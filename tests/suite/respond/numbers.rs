@@ -1,6 +1,6 @@
 //! Numbers of states, proved and by hand.
 
-use super::{ask, to_order};
+use super::{ask, decimals, to_order};
 use lindstedt::respond::State;
 use lindstedt::unstable::orbit::steady::{ComplexTerm, Flow, zero_near};
 use lindstedt::{Exact, Oscillator, Respond, Status, Work};
@@ -358,4 +358,53 @@ fn the_box_is_that_of_the_order_in_which_the_force_acts() {
         assert_eq!(state.stable, Some(true));
     }
     assert_eq!((read(&states.list[2]), states.list[2].stable), (0.0, Some(false)));
+}
+
+/// An order whose terms are all linear bounds nothing but rest: half a frequency in a square spring (Nayfeh and Mook, section
+/// 4.2), 2.5493 in time (DOP853, 500 periods), to order two 2.6994.
+#[test]
+fn linear_orders_bound_nothing() {
+    let equation = "x'' + x + 2*eps*mu*x' + eps*x^2 = 2*cos((2 + eps*sigma)*t)";
+    let set = [("eps", "1/10"), ("mu", "1/10"), ("sigma", "0")];
+    let found = ask(equation, &set, &to_order(2));
+    let states = &found.states[0];
+    assert_eq!((states.count, states.count_proved), (3, true));
+    assert!((decimals(&states.list[0].amplitudes)[0] - 2.699_430_6).abs() < 1e-7);
+    // Where no order is left there is rest, in a box of any size.
+    let found = ask("x'' + x + eps*x*cos(2*t) = 0", &[("eps", "1/10")], &to_order(2));
+    assert_eq!((found.states[0].count, found.complete), (1, true));
+    let wide = Respond { amplitude: Some(3.into()), ..to_order(2) };
+    let found = ask("x'' + x + eps*x*cos(2*t) = 0", &[("eps", "1/10")], &wide);
+    assert_eq!(found.amplitude_limit.value, 3.0);
+}
+
+/// One oscillator in units of x from 10^-9 to 10^9 and of t from 10^-9 to 10^9: the same states, folds and basin.
+#[test]
+fn no_unit_is_special() {
+    let sweep = Some(lindstedt::grid::Axis::parse("sigma=-1..3:9").unwrap());
+    let start = Some(Respond::read_start("0,0").unwrap());
+    let set = [("eps", "1/10"), ("sigma", "1")];
+    for k in [-9, -5, 0, 5, 9] {
+        let unit = 10f64.powi(k);
+        let spring = format!("x'' + x + eps*(x'/5 + x^3*10^({}))", -2 * k);
+        let equation = format!("{spring} = eps*10^({k})*cos((1 + eps*sigma)*t)/2");
+        let found = ask(&equation, &set, &Respond { start: start.clone(), ..to_order(2) });
+        let states = &found.states[0];
+        assert_eq!((states.count, states.count_proved), (3, true), "{k}");
+        assert_eq!(found.leads_to.unwrap().state, Some(2));
+        let largest = decimals(&states.list[0].amplitudes)[0] / unit;
+        assert!((largest - 1.738_042_367_414).abs() < 1e-9, "{k} {largest}");
+        let swept = ask(&equation, &set[..1], &Respond { sweep: sweep.clone(), ..to_order(2) });
+        let folds: Vec<_> = swept.folds.iter().map(|fold| fold.value.clone()).collect();
+        let folds = decimals(&folds);
+        assert!(folds.len() == 2 && (folds[0] - 0.511_704_954).abs() < 1e-8, "{k} {folds:?}");
+    }
+    for om in ["1e9", "1e-9"] {
+        let equation =
+            "x'' + om^2*x + eps*(om*x'/5 + om^2*x^3) = eps*om^2*cos(om*(1 + eps*sigma)*t)/2";
+        let set = [set[0], set[1], ("om", om)];
+        let found = ask(equation, &set, &Respond { start: start.clone(), ..to_order(2) });
+        let leads_to = found.leads_to.unwrap();
+        assert_eq!((leads_to.state, leads_to.decided), (Some(2), true), "{om}");
+    }
 }

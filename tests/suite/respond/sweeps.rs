@@ -3,8 +3,11 @@
 use super::{ask, decimals, to_order};
 use lindstedt::grid::Axis;
 use lindstedt::respond::{Point, Response, State, States};
+use lindstedt::unstable::algebra::Stop;
 use lindstedt::{Oscillator, Respond, Status, Work};
 use rug::Rational;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The detuning follows from omega; a curve over omega is that over sigma.
 #[test]
@@ -155,6 +158,34 @@ fn what_does_not_settle_is_said() {
         answer.remarks.iter().any(said)
     };
     assert_eq!(["1/100", "1/5"].map(remarks), [true, false]);
+}
+
+/// Where rest alone is stable the motion decays to it and is read as zero; stopped on the way, what is read stays with the branches.
+#[test]
+fn decays_to_rest_are_followed() {
+    let equation = "x'' + x + eps*(x'/5 + x^3 + 2*x*cos((2 + eps*sigma)*t)) = 0";
+    let case = Oscillator::parse(equation).unwrap().set("eps", "1/10").unwrap();
+    let sweep = Some(Axis::parse("sigma=-3,0,2").unwrap());
+    let question = Respond { sweep, follow: true, ..to_order(2) };
+    let run = |stop| {
+        let work = Work { stop, ..Work::default() };
+        case.respond(&question, &work).unwrap()
+    };
+    let count = Arc::new(AtomicU64::new(0));
+    let counter = Arc::clone(&count);
+    let found = run(Stop::new(move || counter.fetch_add(1, Ordering::SeqCst) == u64::MAX));
+    let read = |list: &[lindstedt::respond::Reading]| -> Vec<f64> {
+        list.iter().map(|it| it.amplitudes.as_ref().unwrap()[0].value).collect()
+    };
+    let [up, down] = found.value.followed.as_ref().unwrap();
+    let (up, down) = (read(up), read(down));
+    assert!(up[0] == 0.0 && up[1] > 0.5 && up[2] > up[1] && down[2] == 0.0, "{up:?} {down:?}");
+    let (asked, counter) = (count.load(Ordering::SeqCst), AtomicU64::new(0));
+    let late = asked * 3 / 4;
+    let found = run(Stop::new(move || counter.fetch_add(1, Ordering::SeqCst) >= late));
+    assert!(matches!(found.standing, lindstedt::Standing::Stopped { .. }));
+    let [up, down] = found.value.followed.as_ref().unwrap();
+    assert!(!up.is_empty() && down.len() < 3 && !found.value.branches.is_empty());
 }
 
 /// Locked motion in closed branches between the values of the sweep: that of one unknown is found, of several it is remarked that

@@ -24,6 +24,8 @@ const PERIODS: u32 = 100;
 const MOST_STAYS: usize = 10;
 /// What is left of that, in parts of the harmonic.
 const SETTLED: f64 = 1e-3;
+/// A harmonic that falls and is below this part of the largest amplitudes looked at tends to zero.
+const ZERO: f64 = 1e-6;
 
 /// The harmonics at one value.
 pub(crate) struct Reading {
@@ -68,14 +70,16 @@ impl Sampling {
 }
 
 impl Oscillator {
-    /// The harmonics k_j of the forced motion at the values of an axis, upwards and then downwards.
+    /// The harmonics k_j of the forced motion at the values of an axis, upwards and then downwards; fewer where the work
+    /// is stopped. `largest` is the largest amplitude looked at.
     ///
     /// # Errors
-    /// [`Refused`] for a parameter that cannot be varied, and without a force of one period; that of a stopped work.
+    /// [`Refused`] for a parameter that cannot be varied, and without a force of one period.
     pub(crate) fn followed(
         &self,
         axis: &Axis,
         wanted: &Harmonics,
+        largest: f64,
         work: &Work,
     ) -> Result<[Vec<Reading>; 2], Error> {
         let setup = set_up(self, &Start::default(), true, precomputed(work))?;
@@ -114,19 +118,18 @@ impl Oscillator {
             };
             let all = values.len();
             let read = |points: &[Point<f64>]| read(points, &harmonics, wanted.modes.as_deref());
+            let reader: (&Reader<'_>, f64) = (&read, ZERO * largest);
             for (index, value) in values.into_iter().enumerate() {
-                let harmonics = settled(&sweep, &mut settings, index, count as usize, &read, work);
+                let harmonics = settled(&sweep, &mut settings, index, count as usize, reader, work);
+                if work.stop.asked() {
+                    return Ok(found);
+                }
                 list.push(Reading { value, harmonics });
-                if work.stop.asked()
-                    || !work.goes_on(Progress::Parts(k * all + list.len(), 2 * all))
-                {
-                    break;
+                if !work.goes_on(Progress::Parts(k * all + list.len(), 2 * all)) {
+                    return Ok(found);
                 }
             }
             start = settings.start;
-            if work.stop.asked() {
-                return Err(Refused::stopped("stopped on the way", "fewer values").into());
-            }
         }
         Ok(found)
     }
@@ -138,7 +141,7 @@ fn settled(
     settings: &mut DiagramSettings<f64>,
     index: usize,
     count: usize,
-    read: &Reader<'_>,
+    (read, zero): (&Reader<'_>, f64),
     work: &Work,
 ) -> Option<Vec<[f64; 2]>> {
     let flow = |on| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
@@ -153,12 +156,26 @@ fn settled(
         settings.start.clone_from(&points.last()?.state);
         let last = points.len() / count - 1;
         let three = [0, last / 2, last].map(|k| read(&points[k * count..(k + 1) * count]));
+        if falls_to_zero(&three, zero) {
+            return Some(vec![[0.0; 2]; three[2].len()]);
+        }
         if is_settled(&three) {
             let [.., last] = three;
             return Some(last);
         }
     }
     None
+}
+
+/// The largest |a_j e^(i phi_j)|.
+fn size(read: &[[f64; 2]]) -> f64 {
+    read.iter().fold(0.0f64, |size, w| size.max(w[0].hypot(w[1])))
+}
+
+/// Whether what is read at three times falls, and is below what counts as zero.
+fn falls_to_zero(three: &[Vec<[f64; 2]>; 3], zero: f64) -> bool {
+    let [a, b, c] = three.each_ref().map(|read| size(read));
+    c <= zero && c <= b && b <= a
 }
 
 /// Whether what is read at three equidistant times is at rest: a difference that shrinks by r from one to the next leaves
@@ -168,7 +185,7 @@ fn is_settled([a, b, c]: &[Vec<[f64; 2]>; 3]) -> bool {
         let pairs = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
         pairs.fold(0.0, f64::max)
     };
-    let size = c.iter().fold(0.0f64, |size, w| size.max(w[0].hypot(w[1])));
+    let size = size(c);
     let (first, second) = (apart(a, b), apart(b, c));
     second <= 1e-8 * size || (second < first && second * second < SETTLED * size * (first - second))
 }

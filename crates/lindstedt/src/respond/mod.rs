@@ -89,9 +89,7 @@ const LEAST_STEPS: usize = 60;
 const MOST_POINTS: usize = 100_000;
 /// Values at which the equation is integrated along a sweep.
 const MOST_FOLLOWED: usize = 101;
-/// How long a start state is followed at least, in eps t.
-const LONG: f64 = 1e4;
-/// And so many times as long as the slowest motion beside a state takes to fall by a factor e.
+/// A start state is followed at least so many times as long as the slowest motion beside a state takes to fall by a factor e.
 const DECAY: f64 = 40.0;
 
 impl Oscillator {
@@ -139,7 +137,7 @@ impl Oscillator {
             (None, Some(first), Some(second)) => subject.plane(first, second)?,
         };
         if let (Some(axis), None, true) = (&question.sweep, &question.second, question.follow) {
-            value.followed = Some(subject.followed(axis)?);
+            value.followed = Some(subject.followed(axis, value.amplitude_limit.value)?);
         }
         if let Some(from) = &question.start {
             value.leads_to = Some(subject.destination(from, &value)?);
@@ -155,9 +153,10 @@ impl Oscillator {
                 }
                 _ => "",
             };
+            let stopped = if work.stop.asked() { ", or the search was stopped" } else { "" };
             remarks.push(Remark(format!(
                 "{place}the number of steady states is not decided: some cannot be told apart within rounding, or too many \
-                 boxes{level}"
+                 boxes{level}{stopped}"
             )));
         }
         let combination = subject.rotating.combination.as_ref();
@@ -167,7 +166,10 @@ impl Oscillator {
         remarks.extend(missing(&value));
         remarks.extend(subject.doubts(question, &value));
         let standing = match question.sweep {
-            _ if work.stop.asked() => Standing::Stopped { done: value.branches.len() },
+            _ if work.stop.asked() => {
+                let done = value.branches.iter().filter(|branch| branch.complete).count();
+                Standing::Stopped { done }
+            }
             None if undecided > 0 || (combination.is_some() && !counted) => Standing::Undecided,
             _ => Standing::Complete,
         };
@@ -296,10 +298,10 @@ impl Subject<'_> {
     }
 
     /// The equation itself along the values.
-    fn followed(&self, axis: &Axis) -> Result<[Vec<Reading>; 2], Error> {
+    fn followed(&self, axis: &Axis, box_amplitude: f64) -> Result<[Vec<Reading>; 2], Error> {
         let values = axis.every(MOST_FOLLOWED);
         let (oscillator, harmonics) = self.in_time()?;
-        let found = oscillator.followed(&values, &harmonics, self.work)?;
+        let found = oscillator.followed(&values, &harmonics, box_amplitude, self.work)?;
         let reading = |found: &crate::motion::Reading| {
             let number = |value| Estimate { value };
             let polar = |part: &dyn Fn(&[f64; 2]) -> f64| {
@@ -337,9 +339,9 @@ impl Subject<'_> {
         let states = response.states.first().map_or(&[][..], |states| &states.list);
         let decays = states.iter().flat_map(|state| &state.exponents).map(|[re, _]| re.value.abs());
         let slowest = decays.filter(|rate| *rate > 0.0).fold(f64::INFINITY, f64::min);
-        let long = LONG.max(DECAY * self.rate(None) / slowest);
+        let slow = DECAY * self.rate(None) / slowest;
         let goes = |start: &[f64]| {
-            let fate = settle(&system, start, reach, long, &self.work.stop);
+            let fate = settle(&system, start, reach, slow, &self.work.stop);
             match fate {
                 Fate::Steady(w) => {
                     let near = |state: &State| {
@@ -395,6 +397,11 @@ fn missing(value: &Response) -> Vec<Remark> {
         remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
     }
     let readings = value.followed.iter().flatten().flatten();
+    if let Some([up, down]) = value.followed.as_ref().filter(|[up, down]| up.len() != down.len()) {
+        let (up, down) = (up.len(), down.len());
+        remarks
+            .push(Remark(format!("--follow: stopped after {up} values upwards, {down} downwards")));
+    }
     let open = readings.clone().filter(|reading| reading.amplitudes.is_none()).count();
     if open > 0 {
         remarks.push(Remark(format!(

@@ -369,7 +369,8 @@ impl<'a> Subject<'a> {
             None if self.is_family() => (whole.ok_or(Error::NoValue)?, None),
             // Not further than there can be states.
             Some(amplitude) => {
-                (whole.map_or(amplitude / 2.0, |r| (ROOM * r).min(amplitude / 2.0)), None)
+                let far = whole.filter(|r| *r > 0.0).map_or(f64::INFINITY, |r| ROOM * r);
+                (far.min(amplitude / 2.0), None)
             }
             None => self.leading(at, &largest)?,
         };
@@ -379,7 +380,8 @@ impl<'a> Subject<'a> {
     }
 
     /// A box of the lowest order in which a force acts and that bounds its states, and a smaller one: with its states, or as large as
-    /// the orders fall within. Orders before that one have rest, whose bound is nothing to the states that a force makes.
+    /// the orders fall within. Orders before that one have rest, whose bound is nothing to the states that a force makes; so has
+    /// one whose terms are all linear, as of parametric resonance.
     fn leading(
         &self,
         at: &[Values],
@@ -406,6 +408,13 @@ impl<'a> Subject<'a> {
                     None => continue,
                 }
             };
+            if most == 0.0 {
+                // Rest alone, in a box of any size, where no order is left.
+                match order < self.order {
+                    true => continue,
+                    false => return Ok((1.0, None)),
+                }
+            }
             let states = (self.order > order).then(|| outer(&rotating, Some(most))).flatten();
             let less = states.map(|states| ROOM * self.falling(at, states, most));
             return Ok((ROOM * most, less.filter(|less| *less < ROOM * most)));

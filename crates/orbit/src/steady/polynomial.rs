@@ -320,20 +320,20 @@ impl System {
     }
 
     /// Every row's terms of its own highest degree in all variables, and an upper bound of the sum of
-    /// |coefficients| for every lower degree.
+    /// |coefficients| for every degree up to that.
     pub(crate) fn leading(&self) -> (Self, Vec<Vec<f64>>) {
         let degree = |term: &Term| term.powers.iter().map(|(_, e)| e).sum::<u32>();
         let mut top = Vec::new();
         let mut sizes = Vec::new();
         for row in &self.rows {
             let highest = row.iter().map(degree).max().unwrap_or(0);
-            let mut below = vec![Interval::ZERO; highest as usize];
-            for term in row.iter().filter(|term| degree(term) < highest) {
-                let sum = &mut below[degree(term) as usize];
+            let mut sums = vec![Interval::ZERO; highest as usize + 1];
+            for term in row {
+                let sum = &mut sums[degree(term) as usize];
                 *sum = *sum + Interval::point(term.coefficient.above());
             }
             top.push(row.iter().filter(|term| degree(term) == highest).cloned().collect());
-            sizes.push(below.into_iter().map(Interval::high).collect());
+            sizes.push(sums.into_iter().map(Interval::high).collect());
         }
         (Self { rows: top, ..*self }, sizes)
     }

@@ -100,7 +100,8 @@ pub(super) fn zeros_at(
         return None;
     }
     let (zeros, open) = (Vec::new(), Vec::new());
-    let mut search = Search { system, places, limits, zeros, open, boxes: 0 };
+    let rounding = region.iter().map(|x| ROUNDING * x.above()).collect();
+    let mut search = Search { system, places, limits, zeros, open, boxes: 0, rounding };
     let stopped = !search.run(region);
     let meets = |zero: &Zero| meet(&zero.enclosure, region).is_some();
     // Boxes that were open before a zero was proved on a box around them.
@@ -134,7 +135,7 @@ pub(super) fn modulus(region: &[Interval]) -> Interval {
     })
 }
 
-/// What a zero found in doubles may be beside the box that has it.
+/// Rounding errors of a zero found in doubles over the largest |x_i| of the region searched.
 const ROUNDING: f64 = 1e-13;
 
 struct Search<'a> {
@@ -144,6 +145,8 @@ struct Search<'a> {
     zeros: Vec<Zero>,
     open: Vec<Region>,
     boxes: usize,
+    /// What a zero found in doubles may be beside the box that has it, by sides.
+    rounding: Vec<f64>,
 }
 
 impl Search<'_> {
@@ -244,17 +247,16 @@ impl Search<'_> {
         };
         let Some(at) = newton_while(self.system, &middle(part), |at| !strays(at)) else { return };
         // A linear equation alone leaves a side of the width of rounding, within which nothing is proved.
-        let rounding = |x: &f64| ROUNDING * (1.0 + x.abs());
-        let near = |(x, side): (&f64, &Interval)| {
-            (x - side.middle()).abs() <= 0.6 * side.width() + rounding(x)
+        let near = |((x, side), rounding): ((&f64, &Interval), &f64)| {
+            (x - side.middle()).abs() <= 0.6 * side.width() + rounding
         };
-        let width = |(x, side): (&f64, &Interval)| 1.2 * side.width() + 4.0 * rounding(x);
-        let widths: Vec<f64> = at.iter().zip(part).map(width).collect();
+        let width = |(side, rounding): (&Interval, &f64)| 1.2 * side.width() + 4.0 * rounding;
+        let widths: Vec<f64> = part.iter().zip(&self.rounding).map(width).collect();
         // Known, and on no smaller box than is tried.
         let wide =
             |(x, (a, width)): (&Interval, (&f64, &f64))| x.contains(*a) && x.width() >= *width;
         let known = |zero: &Zero| zero.unique_within.iter().zip(at.iter().zip(&widths)).all(wide);
-        if !at.iter().zip(part).all(near) || self.zeros.iter().any(known) {
+        if !at.iter().zip(part).zip(&self.rounding).all(near) || self.zeros.iter().any(known) {
             return;
         }
         if let Some(zero) = zero_near(self.system, &at, &widths) {
@@ -305,12 +307,15 @@ fn joined(open: Vec<Region>) -> Vec<Region> {
     hulls
 }
 
+/// How many times as far as where the terms of highest degree are largest a bound may be.
+const FARTHEST: f64 = 1e6;
 /// Boxes of the sphere looked at for a bound.
 const MOST_PARTS: usize = 100_000;
 
 /// Some R such that every pair (x_0, x_1), (x_2, x_3), ... of every zero has a modulus below R, from the terms of highest
 /// degree of every polynomial: where they have no common zero on the cube's surface max |x_i| = 1, one of them outgrows
-/// the rest of its polynomial. Nothing where they have one, or where that could not be decided.
+/// the rest of its polynomial; 0 where all have terms of one degree alone. Nothing where they have one, or where that
+/// could not be decided.
 #[must_use]
 pub fn bound(system: &System) -> Option<f64> {
     let n = system.variables();
@@ -324,6 +329,9 @@ pub fn bound(system: &System) -> Option<f64> {
         face[side] = Interval::point(end);
         stack.push(face);
     }
+    // Where the terms of highest degree are almost zero the bound is far beyond that where they are large.
+    let least = sizes.iter().filter_map(|sums| outgrows(*sums.last()?, sums));
+    let farthest = FARTHEST * least.fold(0.0, f64::max);
     let mut radius = 0.0f64;
     let mut parts = 0;
     while let Some(part) = stack.pop() {
@@ -335,7 +343,7 @@ pub fn bound(system: &System) -> Option<f64> {
         let outgrown = values
             .iter()
             .zip(&sizes)
-            .filter_map(|(value, below)| outgrows(value.below(), below).filter(|r| *r < 1e6));
+            .filter_map(|(value, sums)| outgrows(value.below(), sums).filter(|r| *r <= farthest));
         // A much finer cut gives a smaller bound; a few parts are worth it.
         let width = part.iter().map(|x| x.width()).fold(0.0, f64::max);
         let size = modulus(&part).high();
@@ -352,17 +360,22 @@ pub fn bound(system: &System) -> Option<f64> {
     Some(radius)
 }
 
-/// A power of 2^(1/4), rounded up, beyond which c r^d > sum_(k<d) below_k r^k, d the length of the list.
-fn outgrows(c: f64, below: &[f64]) -> Option<f64> {
-    const POWERS: std::ops::Range<i32> = -40..80;
+/// A power of 2^(1/4), rounded up, beyond which c r^d > sum_(k<d) sums_k r^k, d + 1 the length of the list; 0 where there is
+/// nothing to outgrow. It lies between m and 2 m, m the largest (sums_k/c)^(1/(d-k)) (Fujiwara).
+fn outgrows(c: f64, sums: &[f64]) -> Option<f64> {
+    let (_, below) = sums.split_last()?;
     let radius = |k: i32| 2f64.powf(f64::from(k) / 4.0);
+    let one = |(k, size): (usize, &f64)| (size / c).powf(1.0 / (below.len() - k) as f64);
+    let most = below.iter().enumerate().map(one).fold(0.0, f64::max);
+    if !(c > 0.0 && most.is_finite()) {
+        return None;
+    }
+    if most == 0.0 {
+        return Some(0.0);
+    }
     // Falls with r. A sum of a few positive doubles and their powers is known to a few units.
     let rest = |r: f64| below.iter().fold(0.0, |sum, size| (sum + size) / r);
-    let holds = |k: i32| rest(radius(k)) * (1.0 + 1e-12) < c;
-    let (mut low, mut high) = (POWERS.start - 1, POWERS.end);
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        if holds(middle) { high = middle } else { low = middle }
-    }
-    (c > 0.0 && high < POWERS.end).then(|| radius(high))
+    let first = (4.0 * most.log2()).floor() as i32 - 1;
+    let mut powers = (first..first + 12).map(radius);
+    powers.find(|r| rest(*r) * (1.0 + 1e-12) < c)
 }

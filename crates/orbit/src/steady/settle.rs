@@ -19,20 +19,32 @@ pub enum Fate {
 
 /// A motion goes round a cycle if it comes back so near to a point of it, in parts of the way it goes from it, ...
 const RETURN: f64 = 1e-6;
-/// ... and so long after it: an exponent -r of a steady state beside which it turns would move it by more, r being above 1e-8.
+/// ... and so long after it, in units of time: an exponent -r of a steady state beside which it turns would move it by more, r
+/// being above 1e-8.
 const LATE: f64 = 100.0;
+/// Units of time after which what still moves is not followed further.
+const LONG: f64 = 1e4;
 /// Relative error of a step.
 const TOLERANCE: f64 = 1e-9;
 const MOST_STEPS: usize = 1_000_000;
 
-/// Integrates w' = G(w) in doubles until time `end` (Dormand and Prince's pair of orders 5 and 4), or until Newton's
-/// method finds a steady state so near that the rest of the way is decided, or until it is seen to go round a cycle;
-/// `reach` is the unit of w.
+/// Integrates w' = G(w) in doubles (Dormand and Prince's pair of orders 5 and 4) for at least the time that `slow` decays
+/// take, or until Newton's method finds a steady state so near that the rest of the way is decided, or until it is seen to
+/// go round a cycle; `reach` is the unit of w, `reach`/|G| on its axes there that of the time.
 #[must_use]
-pub fn settle(system: &System, start: &[f64], reach: f64, end: f64, stop: &Stop) -> Fate {
+pub fn settle(system: &System, start: &[f64], reach: f64, slow: f64, stop: &Stop) -> Fate {
     let size = |w: &[f64]| w.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let (mut w, mut time) = (start.to_vec(), 0.0);
-    let mut step = 1e-3 * reach / (size(&system.values(&w)) + 1e-12 * reach);
+    let axis = |k: usize, end: f64| {
+        let mut at = vec![0.0; start.len()];
+        at[k] = end;
+        size(&system.values(&at)) / reach
+    };
+    let axes = (0..start.len()).flat_map(|k| [axis(k, reach), axis(k, -reach)]);
+    let fast = axes.fold(0.0, f64::max);
+    let unit = if fast > 0.0 { fast.recip() } else { 1.0 };
+    let end = slow.max(LONG * unit);
+    let mut step = 1e-3 * reach / (size(&system.values(&w)) + 1e-12 * reach / unit);
     let (mut section, mut accepted): (Option<Section>, usize) = (None, 0);
     for count in 0..MOST_STEPS {
         if time >= end || stop.asked() {
@@ -58,7 +70,7 @@ pub fn settle(system: &System, start: &[f64], reach: f64, end: f64, stop: &Stop)
             w = next;
             accepted += 1;
             if accepted.is_power_of_two() {
-                if section.is_some_and(|section| section.recurs(reach)) {
+                if section.is_some_and(|section| section.recurs(reach, unit)) {
                     return Fate::Cycle(w);
                 }
                 section = Some(Section::new(time, &w, system.values(&w)));
@@ -147,9 +159,9 @@ impl Section {
         }
     }
 
-    fn recurs(&self, reach: f64) -> bool {
+    fn recurs(&self, reach: f64, unit: f64) -> bool {
         let (count, last) = self.returns;
-        count > 2 && last - self.time > LATE && self.away > 1e-3 * reach
+        count > 2 && last - self.time > LATE * unit && self.away > 1e-3 * reach
     }
 }
 

@@ -27,11 +27,22 @@ fn word(stable: Option<bool>, near_resonance: Option<Estimate>) -> &'static str 
     stability_word(stable, if near_resonance.is_some() { "undecided" } else { "neutral" })
 }
 
+/// So many decimals, or as many digits in powers of ten where that leaves few or is long.
+fn decimals(x: f64, count: usize) -> String {
+    let size = x.abs();
+    match size == 0.0 || (100.0 * 0.1f64.powi(count as i32)..1e6).contains(&size) {
+        true => format!("{x:.count$}"),
+        false => format!("{x:.count$e}"),
+    }
+}
+
 fn exponent([re, im]: &[Estimate; 2]) -> String {
+    let part = |x| decimals(x, 6);
     if im.value == 0.0 {
-        format!("{:.6}", re.value)
+        part(re.value)
     } else {
-        format!("{:.6} {} {:.6}i", re.value, if im.value < 0.0 { '-' } else { '+' }, im.value.abs())
+        let sign = if im.value < 0.0 { '-' } else { '+' };
+        format!("{} {sign} {}i", part(re.value), part(im.value.abs()))
     }
 }
 
@@ -74,7 +85,7 @@ fn state(state: &State, free: bool, drifts: bool) -> Vec<Text> {
     }
     cells.extend([word(state.stable, state.near_resonance).into(), exponents.join(", ").into()]);
     if drifts {
-        let rates = state.drift.iter().map(|rate| format!("{:.6}", rate.value));
+        let rates = state.drift.iter().map(|rate| decimals(rate.value, 6));
         cells.push(rates.collect::<Vec<_>>().join(", ").into());
     }
     cells
@@ -157,7 +168,10 @@ fn jumps(value: &Response, name: &str) -> Option<Document> {
         let settled = |k: usize| list[k].amplitudes.is_some();
         let steps = (1..list.len()).filter(|k| settled(k - 1) && settled(*k));
         let k = steps.max_by(|a, b| step(a).total_cmp(&step(b)))?;
-        let shown = |k| of(k).map(|a| format!("{a:.6}")).collect::<Vec<_>>().join(", ");
+        // What is nothing beside the largest amplitudes is shown as zero.
+        let least = 1e-6 * value.amplitude_limit.value;
+        let own = |a: f64| decimals(if a < least { 0.0 } else { a }, 6);
+        let shown = |k| of(k).map(own).collect::<Vec<_>>().join(", ");
         let at = format!("{} .. {}", list[k - 1].value.value, list[k].value.value);
         Some([word.to_owned(), at, shown(k - 1), shown(k)])
     };
@@ -265,10 +279,8 @@ impl Present for Answer<Response> {
         } else {
             "the truncated slow flow may have states beyond"
         };
-        let limit = match value.amplitude_limit.value {
-            a if a < 1e6 => format!("amplitudes up to {a:.4}: {whole}"),
-            a => format!("amplitudes up to {a:.4e}: {whole}"),
-        };
+        let limit =
+            format!("amplitudes up to {}: {whole}", decimals(value.amplitude_limit.value, 4));
         let mut lines: Vec<(Text, Text)> = vec![("box".into(), limit.into())];
         if !at.is_empty() {
             lines.insert(0, ("at".into(), at.join(", ").into()));
