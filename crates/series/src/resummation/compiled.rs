@@ -371,6 +371,32 @@ mod tests {
         assert!(resolved > 25, "{resolved}");
     }
 
+    /// Far below the innermost node, where the sum is as exact as doubles are, the variable of the wedge is, too:
+    /// (1 + x)^(-1/2) + ln(1 + x)/x.
+    #[test]
+    fn points_far_below_the_nodes() {
+        let bits = Compiled::bits(25);
+        let two = series(24, bits);
+        let sum = |(a, b): (&Float, &Float)| Float::with_val(bits, a + b);
+        let coefficients = two[0].0.coefficients.iter().zip(&two[1].0.coefficients).map(sum);
+        let map = UniformMap {
+            scale: Float::with_val(bits, 1),
+            prefactor: Float::with_val(bits, 0.5),
+            radius: None,
+        };
+        let (coefficients, point) = (coefficients.collect(), Float::new(bits));
+        let sample = Sample { coefficients, point, map: Some(map), radius: None, bits };
+        let sum = Compiled::new(&sample, &[Method::ConformalPade], &Stop::default()).unwrap();
+        for x in [1e-9f64, 1e-6, 1e-4, 1e-2, 0.1, 0.3, -1e-3, -0.1] {
+            let found = sum.at(x);
+            let distance = (found.value - two[0].1(x) - two[1].1(x)).abs();
+            assert!(
+                distance <= 5.0 * found.error && found.error < 1e-13,
+                "{x}: {distance:e} {found:?}"
+            );
+        }
+    }
+
     /// Borel's integral is another one at every point.
     #[test]
     fn what_has_no_formula_is_refused() {

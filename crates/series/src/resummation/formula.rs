@@ -6,8 +6,10 @@ use super::prepared::{Prepared, Way};
 use super::{Map, Pade, Sample};
 use rug::Float;
 
-/// Newton's steps for the variable of a wedge, from a guess that is right to some per cent.
-const STEPS: u32 = 4;
+/// Newton's steps for the variable of a wedge at most: two from a guess between nodes, six from far below the innermost one.
+const STEPS: u32 = 20;
+/// After a step of this part of the variable the next would be below rounding.
+const LAST: f64 = 1e-8;
 
 /// A value of one approximant, and that of the one before.
 pub(super) struct Values {
@@ -140,7 +142,11 @@ fn wedge(quotient: f64, fraction: f64, guess: f64) -> f64 {
     for _ in 0..STEPS {
         let height = w.ln() - ahead * (-w).ln_1p() - behind * w.ln_1p() - goal;
         let slope = 1.0 / w + ahead / (1.0 - w) - behind / (1.0 + w);
+        let before = w;
         w = (w - height / slope).clamp(w / 2.0, (1.0 + w) / 2.0);
+        if (w - before).abs() <= LAST * before {
+            break;
+        }
     }
     w.copysign(quotient)
 }
