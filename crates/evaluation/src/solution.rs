@@ -303,9 +303,15 @@ impl Trajectory {
         let (estimate, bits) = match few::partial_sum(&source, known, None, accuracy) {
             Some(few) => few.ok().map(|found| (found.outcome.estimate, found.bits))?,
             None => {
-                let sums = self.methods.iter();
-                let sums = sums.filter_map(|m| settled(&source, *m, known, accuracy, &self.stop));
-                sums.min_by(|a, b| a.0.error.total_cmp(&b.0.error))?
+                let sum = |m: &Method| settled(&source, *m, known, accuracy, &self.stop);
+                let sums = self.methods.iter().filter_map(sum);
+                let found = sums.min_by(|a, b| a.0.error.total_cmp(&b.0.error));
+                // Approximants at almost no distance from the origin may have singular equations at single phases.
+                let known = |found: &(Estimate, u32)| found.0.error.is_finite();
+                match found {
+                    Some(found) if known(&found) || self.methods.len() == 1 => found,
+                    found => sum(&Method::PartialSum).filter(known).or(found)?,
+                }
             }
         };
         let balls = Balls::new(bits);

@@ -205,3 +205,19 @@ fn harmonics_beyond_half_of_the_phases_hardly_fold() {
     }
     assert!(found.left_out[1] < 0.1, "{:e}", found.left_out[1]);
 }
+
+/// A small parameter so small that the equations of approximants are singular at single phases: the partial sum stands in.
+/// x = cos(omega t) + eps (cos(3 omega t) - cos(omega t))/32 + O(eps^2), omega = 1 + 3 eps/8.
+#[test]
+fn tiny_parameters_have_values_at_all_phases() {
+    for (text, eps) in [("1e-10", 1e-10), ("3e-10", 3e-10), ("1e-15", 1e-15)] {
+        let case = Oscillator::parse("x'' + x + eps*x^3 = 0").unwrap().set("eps", text).unwrap();
+        let x = case.periodic_solution(&Evaluate::default(), 15, &Work::default()).unwrap().value;
+        for t in [0.0, 1.0, 3.0, 20.0] {
+            let phase: f64 = (1.0 + 0.375 * eps) * t;
+            let exact = phase.cos() + eps / 32.0 * ((3.0 * phase).cos() - phase.cos());
+            let found = x.at(t);
+            assert!((found.value - exact).abs() < 1e-14 && found.error < 1e-13, "{text} {found:?}");
+        }
+    }
+}
