@@ -21,24 +21,26 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 impl Names {
-    /// The same with the unknowns of several equations: the names with primes, in the order in which they
-    /// occur.
+    /// The same with the unknowns of several equations: the names with primes, in the order in which their second derivatives
+    /// occur, or their first ones of those that have no second.
     #[must_use]
     pub fn of_system<'a>(mut self, equations: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut unknowns: Vec<String> = Vec::new();
-        for list in equations.into_iter().filter_map(|text| tokens(text).ok()) {
-            for pair in list.windows(2) {
-                let [Token { kind: Kind::Name(name), .. }, Token { kind: Kind::Primes(_), .. }] =
-                    pair
-                else {
-                    continue;
-                };
-                if !unknowns.contains(name) {
-                    unknowns.push(name.clone());
-                }
+        let all = equations.into_iter().filter_map(|text| tokens(text).ok());
+        let all: Vec<Token> = all.flatten().collect();
+        let primed = |pair: &[Token]| match pair {
+            [Token { kind: Kind::Name(name), .. }, Token { kind: Kind::Primes(order), .. }] => {
+                Some((*order > 1, name.clone()))
+            }
+            _ => None,
+        };
+        let (second, first): (Vec<_>, Vec<_>) =
+            all.windows(2).filter_map(primed).partition(|(second, _)| *second);
+        self.unknowns = Vec::new();
+        for (_, name) in second.into_iter().chain(first) {
+            if !self.unknowns.contains(&name) {
+                self.unknowns.push(name);
             }
         }
-        self.unknowns = unknowns;
         self
     }
 

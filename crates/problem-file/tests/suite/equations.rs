@@ -126,6 +126,15 @@ fn errors_say_where_and_what_instead() {
     );
 }
 
+/// By second derivatives, whichever x' or y' is written before them.
+#[test]
+fn unknowns_have_the_order_of_their_equations() {
+    let of = |list: &[&str]| any().of_system(list.iter().copied()).unknowns;
+    assert_eq!(of(&["x'' + 9*x + eps*z'", "y'' + 4*y", "z'' + z"]), ["x", "y", "z"]);
+    assert_eq!(of(&["eps*y' + x'' + 4*x", "y'' + 9*y - eps*x'"]), ["x", "y"]);
+    assert_eq!(of(&["y'' + x'' + y", "x'' - y'' + x + z'"]), ["y", "x", "z"]);
+}
+
 #[test]
 fn limits_hold_without_recursion_or_memory() {
     let deep =
