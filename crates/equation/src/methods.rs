@@ -231,7 +231,10 @@ fn averaging(
         let combined =
             others.any(|other| other.parameters().iter().any(|name| names.contains(name)));
         let detuned = is_detuned(frequency) && !combined && evaluate(frequency, values).is_none();
-        detuned.then(|| Reason::LargeDetuning(force.term.clone()))
+        detuned.then(|| match frequency.find(&is_irrational) {
+            Some(_) => Reason::IrrationalRatio(force.term.clone()),
+            None => Reason::LargeDetuning(force.term.clone()),
+        })
     };
     let angle = |force: &Forcing| angle(force, values);
     if let Some(reason) = parts.forcing.iter().find_map(of_frequency) {

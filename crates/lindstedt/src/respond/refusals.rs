@@ -6,6 +6,7 @@ use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Kind, Oscillator, Refusal, SlowFlow, Work};
 use lindstedt_derivation::resonance::ResonanceError;
 use lindstedt_evaluation::rotating::NoFrame;
+use rug::Rational;
 
 /// A slow flow that was stopped at a lower order is that of other states; one that was stopped before the energy was
 /// looked for, which comes last, may have families of states.
@@ -96,17 +97,41 @@ pub(super) fn uncoupled(slow: &SlowFlow, order: usize) -> Error {
         return Refused::no_answer("no-response", message, hint).into();
     }
     let message = format!("up to order {order} no resonance couples the force to an amplitude");
-    let square = slow.system.squares.first().filter(|_| slow.system.algebraic.is_none());
-    let hint = match square.filter(|_| !slow.system.is_exact()) {
-        Some(square) => at_root(&square.to_string()),
-        None => "a frequency nearer to a resonance (or the detuning as a parameter)".to_owned(),
+    let hint = match &slow.system.squares[..] {
+        _ if slow.system.is_exact() || slow.system.algebraic.is_some() => {
+            "a frequency nearer to a resonance (or the detuning as a parameter)".to_owned()
+        }
+        [square] => at_root(&square.to_string(), beside(&slow.system.force(), square)),
+        _ => "irrational frequencies have no number for a combination of them: squares of rational numbers beside \
+              theirs, the differences as small terms, as 289/144*y - 1/144*y for 2*y"
+            .to_owned(),
     };
     Refused::no_answer("no-response", message, format!("{hint}, a higher --order")).into()
 }
 
-/// How a force beside an irrational frequency is written: no number is at its resonance.
-fn at_root(square: &str) -> String {
-    format!("its frequency as the root with a detuning: cos((sqrt({square}) + eps*sigma)*t)")
+/// How a force beside an irrational frequency is written: no number is at its resonance. With the multiple of the frequency
+/// that it is beside, and what it is off.
+fn at_root(square: &str, multiple: Option<(Rational, f64)>) -> String {
+    let (multiple, off) = match multiple {
+        Some((multiple, off)) if multiple != 1 => {
+            (format!("{multiple}*"), format!(", eps*sigma = {off:.6}"))
+        }
+        Some((_, off)) => (String::new(), format!(", eps*sigma = {off:.6}")),
+        None => Default::default(),
+    };
+    format!(
+        "a number is at no resonance of an irrational frequency: the root with a detuning, cos(({multiple}sqrt({square}) + eps*sigma)*t){off}"
+    )
+}
+
+/// The multiple p/q of a root, p and q at most 3, that is nearest to a frequency, and the distance from it.
+fn beside(rate: &Rational, square: &Rational) -> Option<(Rational, f64)> {
+    let (rate, root) = (rate.to_f64(), square.to_f64().sqrt());
+    let all = (1..=3).flat_map(|q| (1..=3).map(move |p| Rational::from((p, q))));
+    let off = |multiple: &Rational| rate - multiple.to_f64() * root;
+    let nearest = all.min_by(|a, b| off(a).abs().total_cmp(&off(b).abs()))?;
+    let distance = off(&nearest);
+    (rate > 0.0).then_some((nearest, distance))
 }
 
 pub(super) fn no_resonance(name: &str) -> Error {
@@ -158,7 +183,8 @@ pub(super) fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
     })) = &error
         && !squares.contains(',')
     {
-        return Refused { code, kind, message: error.to_string(), hint: at_root(squares) }.into();
+        return Refused { code, kind, message: error.to_string(), hint: at_root(squares, None) }
+            .into();
     }
     let message = format!("no response from a slow flow: {error}");
     let hint = if hint.is_empty() { other.to_owned() } else { format!("{hint}; {other}") };
