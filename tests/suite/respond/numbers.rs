@@ -408,3 +408,20 @@ fn no_unit_is_special() {
         assert_eq!((leads_to.state, leads_to.decided), (Some(2), true), "{om}");
     }
 }
+
+/// Where a table of orders alone brings the small parameter in, it is 1.
+#[test]
+fn a_table_of_orders_counts_with_one() {
+    let values = "[parameters]\nb = { value = \"1/5\" }\nf = { value = \"1/50\" }";
+    let text =
+        |orders: &str, equation: &str| format!("equation = \"{equation}\"\n{orders}\n{values}");
+    let file = text("orders = { b = 1, f = 2 }", "x'' + x + x'*f/2 + b*x^2 + x^3*f = f*cos(t)");
+    let written = text("", "x'' + x + eps^2*x'*f/2 + eps*b*x^2 + eps^2*x^3*f = eps^2*f*cos(t)");
+    let counts = Oscillator::file(&file).unwrap();
+    let set = Oscillator::file(&written).unwrap().set("eps", "1").unwrap();
+    let [one, other] = [counts, set].map(|case| {
+        let states = case.respond(&to_order(2), &Work::default()).unwrap().value.states;
+        states[0].list.iter().map(|state| decimals(&state.amplitudes)[0]).collect::<Vec<_>>()
+    });
+    assert!(!one.is_empty() && one == other, "{one:?} {other:?}");
+}

@@ -127,7 +127,8 @@ impl Oscillator {
         let start = Instant::now();
         self.second_order()?;
         self.check_frequencies()?;
-        let subject = Subject::new(self, question, work)?;
+        let case = self.with_order_parameter();
+        let subject = Subject::new(&case, question, work)?;
         subject.refuse_amplitude()?;
         let unforced = subject.rotating.unforced();
         let mut value = match (unforced, &question.sweep, &question.second) {
