@@ -12,6 +12,9 @@ pub struct Response {
     pub parameter: Option<String>,
     /// What the x_j are called: the unknowns, or q_1, q_2, ... of the modes.
     pub coordinates: Vec<String>,
+    /// x = P q line by line in text and in LaTeX, where they are those of modes.
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_text")]
+    pub modes: Vec<[String; 2]>,
     /// k_j.
     pub turns: Vec<String>,
     /// The largest a_j that is looked at.
@@ -214,4 +217,8 @@ pub struct Corner {
     pub values: [Number; 2],
     /// a_j.
     pub amplitudes: Vec<Number>,
+}
+
+fn as_text<S: Serializer>(lines: &[[String; 2]], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(lines.iter().map(|[text, _]| text))
 }

@@ -12,6 +12,7 @@ use crate::grid::Axis;
 use crate::motion::Harmonics;
 use crate::refusal::{Kind, Refusal, Refused};
 use crate::{Error, Exact, Oscillator, Remark, SlowFlow, Work};
+use lindstedt_coeff::print::Style;
 use lindstedt_derivation::resonance::QuadraticInvariant;
 use lindstedt_equation::Expression;
 use lindstedt_evaluation::rotating::{FAMILY, Rotating, forced_part, rotating};
@@ -466,6 +467,7 @@ impl<'a> Subject<'a> {
         Response {
             parameter: None,
             coordinates: self.slow.coordinates(),
+            modes: self.modes(),
             turns: self.rotating.turns.iter().map(|turn| self.listed(turn)).collect(),
             amplitude_limit: Estimate { value: 2.0 * reach },
             complete,
@@ -483,6 +485,13 @@ impl<'a> Subject<'a> {
             followed: None,
             leads_to: None,
         }
+    }
+
+    fn modes(&self) -> Vec<[String; 2]> {
+        let some = self.slow.system.shapes.as_ref();
+        let lines = |style| some.map_or_else(Vec::new, |_| self.slow.print_shapes(style));
+        let pairs = lines(Style::Text).into_iter().zip(lines(Style::Latex));
+        pairs.map(|(text, latex)| [text, latex]).collect()
     }
 
     /// k_1, k_2, ...; those of an irrational frequency are in the middle of an enclosure.

@@ -295,6 +295,8 @@ impl Present for Answer<Response> {
             ("motion".into(), Formula::new(text, latex).into())
         };
         lines.extend(value.turns.iter().enumerate().map(motion));
+        let own = |[text, latex]: &[String; 2]| ("modes".into(), Formula::new(text, latex).into());
+        lines.extend(value.modes.iter().map(own));
         // Of what was not looked for to the end nothing is said to be absent.
         let stopped = matches!(self.standing, Standing::Stopped { .. });
         if stopped {
