@@ -439,3 +439,23 @@ fn a_wrong_expansion_is_noticed() {
     let normalisation = Some("the normalisation does not hold at order 2".to_owned());
     assert_eq!(spoil(&|e| algebra.add_assign(&mut e.solution[0][2], &first)), normalisation);
 }
+
+/// A delay of a quarter turn, sin(pi/2) = 1: x(t - pi/2) = a sin(psi) takes the growth of van der Pol's equation away, and no
+/// cycle is left.
+#[test]
+fn pi_beside_numbers_is_a_number() {
+    let case =
+        lindstedt::Oscillator::parse("x'' + x = eps*(1 - x^2)*x' + eps*x(t - pi/2)").unwrap();
+    let found = case.average(1, &lindstedt::Work::default()).unwrap();
+    assert!(found.header.at.is_empty() && found.value.symbols.is_empty());
+    let numbers: Vec<(i32, f64)> = found.value.amplitude_rate[1]
+        .iter()
+        .map(|term| match &term.coefficient {
+            lindstedt::averaging::Coefficient::Number(number) => {
+                (term.exponent, number.decimal.parse().unwrap())
+            }
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(numbers, [(1, 0.0), (3, -0.125)]);
+}

@@ -17,6 +17,7 @@ use lindstedt_equation::description::Description;
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
 use lindstedt_impact::divergence;
+use lindstedt_problem_file::PI;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -208,13 +209,23 @@ impl Oscillator {
             };
             averaging::average(self.problem(), &settings, &mut |progress| work.goes_on(progress))
         };
-        let given = self.entering_coefficients();
+        let mut given = self.entering_coefficients();
+        // Beside numbers alone pi is one, too.
+        let open = self.problem().equation.parameters();
+        let open: Vec<&String> = open.iter().filter(|name| !given.contains_key(*name)).collect();
+        if open == [PI] {
+            given.insert(PI.to_owned(), Exact::parse(PI)?);
+        }
         let error = match average(&given) {
-            Ok(value) => return Ok((value, given, None)),
+            Ok(value) => {
+                given.remove(PI);
+                return Ok((value, given, None));
+            }
             Err(error) => error,
         };
         let mut all: BTreeMap<String, Exact> = self.all_values().into_iter().collect();
         all.retain(|name, _| given.contains_key(name) || !self.given().contains_key(name));
+        all.extend(given.remove_entry(PI));
         let no_symbols = matches!(
             error,
             DerivationError::Expand(
@@ -222,10 +233,11 @@ impl Oscillator {
                     | ExpandError::Phase { source: PhaseError::Indivisible { .. }, .. }
             )
         );
-        if !no_symbols || all.len() == given.len() {
+        if !no_symbols || all.keys().filter(|name| **name != PI).count() == given.len() {
             return Err(self.refusal(error.into()));
         }
         let value = average(&all).map_err(|error| self.refusal(error.into()))?;
+        all.remove(PI);
         let remark =
             "the expansion is no formula in the parameters: all values of the problem are put in";
         Ok((value, all, Some(Remark(remark.to_owned()))))

@@ -33,9 +33,11 @@ pub(super) fn page(result: &Averaging, pen: Pen) -> Document {
         false => condition_text(Condition::FreeAmplitude),
     };
     page = page.words(format!("Normalisation: {normalisation}."));
-    if !result.symbols.is_empty() {
-        page =
-            page.words(format!("Without a value, kept as symbols: {}.", result.symbols.join(", ")));
+    // The number pi has one.
+    let open: Vec<&str> =
+        result.symbols.iter().map(String::as_str).filter(|name| *name != "pi").collect();
+    if !open.is_empty() {
+        page = page.words(format!("Without a value, kept as symbols: {}.", open.join(", ")));
     }
     for n in 0..=result.order {
         page = page.formula(solution(result, n, pen));
