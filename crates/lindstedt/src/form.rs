@@ -63,7 +63,8 @@ impl Oscillator {
         }
     }
 
-    /// The same with the first values of ranges where the parameters have no value, and that it is so.
+    /// The same with the first values of ranges where the parameters have no value, and that it is so: those other than 0, at
+    /// which a force or a friction would be none.
     pub(crate) fn at_beginnings<'a>(
         &self,
         axes: impl Iterator<Item = &'a Axis>,
@@ -72,13 +73,16 @@ impl Oscillator {
         for axis in axes {
             let name = &axis.name;
             let occurs = self.problem().parameters.iter().any(|card| card.name == *name);
-            if let Some(first) = axis.values.first()
+            let acts = axis.values.iter().find(|value| value.sign().is_ne());
+            if let Some(value) = acts.or(axis.values.first())
                 && occurs
                 && self.value(name).is_none()
             {
-                case = case.with(name, first.clone());
+                case = case.with(name, value.clone());
+                let begins =
+                    if axis.values.first() == Some(value) { ", where that begins" } else { "" };
                 remarks.push(Remark(format!(
-                    "{name} has no value: beside its range {name} = {first}, where that begins"
+                    "{name} has no value: beside its range {name} = {value}{begins}"
                 )));
             }
         }

@@ -196,6 +196,10 @@ fn values_without_a_threshold_are_blank_with_the_reason() {
         assert!(shown.contains("  0      - (there is no harmonic force)"), "{shown}");
         assert!(!shown.contains("NaN"), "{shown}");
     }
+    // A range that begins there, of a frequency without a value.
+    let set = ["--set", "gamma=1", "--set", "delta=1/5", "--sweep", "omega=0,1/2,1"];
+    let found = crate::program::json(&[&["threshold", equation][..], &set].concat());
+    assert_eq!(found["blanks"][0]["points"], serde_json::json!([[0.0]]), "{found}");
     // A potential without a loop, along the second sweep.
     let found = file.json(&["--sweep", "omega=1..2:2", "--sweep", "delta=0..1:2"]);
     assert_eq!(found["blanks"], serde_json::json!([]));
