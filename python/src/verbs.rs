@@ -16,7 +16,7 @@ use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Oscillator, Respond, Simulate, Stability, Threshold,
+    Condition, Derive, Error, Evaluate, Oscillator, Respond, Route, Simulate, Stability, Threshold,
     Verify, Work,
 };
 
@@ -68,7 +68,7 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
 fn derive(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     let order = options.parsed("order")?.unwrap_or(4);
     options.only_one(&["mode", "unknown"])?;
-    // What is not read before `finish` is refused: route, tier and harmonics belong to the last.
+    // What is not read before `finish` is refused: route, only, tier and harmonics belong to the last.
     if let Some(mode) = options.parsed("mode")? {
         options.finish()?;
         return boxed(case.normal_mode(mode, order, work));
@@ -91,6 +91,18 @@ fn derive(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         return boxed(case.estimate(order, tier, work));
     }
     let route = options.choice("route", ROUTES)?.unwrap_or_default();
+    let route = match (options.text("only").as_deref(), route) {
+        (None, route) => route,
+        (Some("frequency"), Route::Automatic) => Route::Frequency,
+        (Some("frequency"), Route::EnergyIntegral) => route,
+        (Some("frequency"), _) => {
+            let message = "only=\"frequency\" has its own routes".to_owned();
+            return Err(usage(message, "without route"));
+        }
+        (Some(other), _) => {
+            return Err(usage(format!("only {other:?} is not known"), "only=\"frequency\""));
+        }
+    };
     options.finish()?;
     boxed(case.derive(Derive { order, route }, work))
 }

@@ -188,7 +188,7 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
             format!("{} works on x', so the amplitude drifts", show(e))
         }
         Reason::Condition => "the condition of the problem belongs to another method".into(),
-        Reason::Form => format!("the form x*F({small}*ln(x^2)) is needed"),
+        Reason::Form => format!("needs a force f(x), polynomial or x*F({small}*ln(x^2))"),
         Reason::Frequency(e) => format!(
             "{}: forces are cos or sin of multiples of one omega*t by numbers, without a phase",
             show(e)

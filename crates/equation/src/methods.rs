@@ -31,7 +31,14 @@ pub(crate) fn decide(
         (true, _) if !unbound => Algebra::TrigonometricOverRationals,
         _ => Algebra::TrigonometricOverParameters,
     };
-    let energy = if is_energy_form(rest) { Vec::new() } else { vec![Reason::Form] };
+    let polynomial = lindstedt.is_empty()
+        && !logarithms
+        && !rest.contains(&Expression::VELOCITY)
+        && problem.conditions.contains(&Condition::InitialAmplitude);
+    let energy = match polynomial || is_energy_form(rest) {
+        true => Vec::new(),
+        false => vec![Reason::Form],
+    };
     let saddle_at_zero = stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less);
     // Without a force nothing splits, and a saddle is no reason to think of Melnikov.
     let saddle = !parts.forcing.is_empty()

@@ -180,7 +180,8 @@ class Oscillator:
         """The expansion to an order, substituted back: exact, or `tier="collocation"`, `"fourier"`.
 
         Averaged with a free amplitude (`under("free")`) and at resonance. `mode=k` is a normal mode,
-        `unknown="a"` a parameter that solvability fixes; `route` is auto, clock, driver or energy.
+        `unknown="a"` a parameter that solvability fixes; `route` is auto, clock, driver or energy;
+        `only="frequency"` leaves the solution out and goes to much higher orders.
         """
         means = taken(options)
         answer = self._ask("derive", {"order": order, **options}, means)
