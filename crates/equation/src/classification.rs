@@ -106,7 +106,7 @@ pub enum Reason {
     Drift(Expression),
     /// The condition of the problem belongs to another method.
     Condition,
-    /// The form x F(small ln x^2) is needed.
+    /// A force f(x), polynomial or of the form x F(small ln x^2), is needed.
     Form,
     /// No saddle of an integrable equation at order zero.
     NoSaddle,

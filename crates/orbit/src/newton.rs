@@ -14,6 +14,8 @@ use rug::Float;
 const MOST_STEPS: usize = 40;
 /// A step below this fraction of the orbit ends them.
 const CONVERGED: f64 = 1e-10;
+/// A step of so many times the largest harmonic leads nowhere.
+const FARTHEST: f64 = 1e3;
 /// Sweeps of the inner iteration, and the factor that they shall gain.
 const MOST_SWEEPS: usize = 60;
 const GAIN: f64 = 1e-9;
@@ -143,6 +145,11 @@ pub(crate) fn refine(
         rows.iter_mut().for_each(|row| row.resize(modes + 1, Complex::default()));
         let step = solve(&model, inverse, condition.to_f64(), &rows, &task.stop);
         let change = Float::with_val(53, size(&step.unknowns)) << exponent;
+        // From a solution of the balance no step goes beyond the orbit; its numbers would double their bits each time.
+        let near = change <= centre.largest() * FARTHEST;
+        if !near {
+            return Err(Failure::NotConverged { modes: inverse.modes });
+        }
         centre.add(step.frequency, &step.unknowns, exponent);
         centre.unknowns.iter_mut().for_each(|f| f.trim());
         if change <= *target {
@@ -151,7 +158,7 @@ pub(crate) fn refine(
         // Doubles give many digits per step; a step that is not much smaller than the one before
         // says that A does not contract.
         slow = if change > Float::with_val(53, &before / 4u32) { slow + 1 } else { 0 };
-        if !change.is_finite() || slow > 3 {
+        if slow > 3 {
             return Err(Failure::NotConverged { modes: inverse.modes });
         }
         // Near the solution the model of the first steps serves for all.
