@@ -451,9 +451,7 @@ fn pi_beside_numbers_is_a_number() {
     let numbers: Vec<(i32, f64)> = found.value.amplitude_rate[1]
         .iter()
         .map(|term| match &term.coefficient {
-            lindstedt::averaging::Coefficient::Number(number) => {
-                (term.exponent, number.decimal.parse().unwrap())
-            }
+            Coefficient::Number(number) => (term.exponent, number.decimal.parse().unwrap()),
             other => panic!("{other:?}"),
         })
         .collect();
