@@ -229,7 +229,6 @@ WRONG: list[Callable[[Oscillator], Any]] = [
     lambda case: case.solution_function(order=4).at([None], 0.1),
     lambda case: case.set(eps=0.1).solution(order=4)(np.array([1j])),
     lambda case: case.set(eps=0.1).solution(order=4).at("next week"),
-    lambda case: case.set(eps=0.1).solution(order=4).at([2, 1]),
     lambda case: _averaged()(np.array([1j])),
     lambda case: _averaged()([object()]),  # type: ignore[arg-type]
     lambda case: _averaged().at([Fraction(1, 3), "soon"]),
@@ -265,3 +264,21 @@ def test_wrong_input_of_any_kind_is_a_usage_error(duffing: Oscillator, ask: Call
     with pytest.raises(lindstedt.LindstedtError) as refused:
         ask(duffing)
     assert isinstance(refused.value, ValueError) and refused.value.code
+
+
+def test_times_have_any_order_and_unknown_numbers_are_none(duffing: Oscillator) -> None:
+    x = duffing.set(eps="1/2").solution()
+    late, early, again = x.at([2, "1/2", 2.0], digits=12)
+    assert late == again and late is not None and early is not None
+    assert abs(float(early) - float(x(0.5))) < 1e-11 and abs(float(late) - float(x(2.0))) < 1e-11
+    assert x.at("1e60", digits=12) == [None]
+    # A binary number of more bits than a double is what it is.
+    third = np.longdouble(1) / 3
+    assert lindstedt._numbers.exact(third) == f"{Fraction(*third.as_integer_ratio())}"
+
+
+def test_the_frequency_alone(duffing: Oscillator) -> None:
+    alone = duffing.derive(30, only="frequency").frequency.fractions
+    assert alone[:9] == duffing.derive(8).frequency.fractions and len(alone) == 31
+    with pytest.raises(lindstedt.UsageError):
+        duffing.derive(4, only="frequency", route="driver")

@@ -162,6 +162,7 @@ def test_where_nothing_is_known_of_a_motion_it_is_no_number(duffing: Oscillator)
     assert (errors[:2] < 1e-9).all() and np.isinf(errors[2:]).all()
     # As long as there is a number it is within its error: the same with more digits.
     far = motion.at([1e12])[0]
+    assert far is not None
     assert abs(float(far) - motion(1e12)) <= motion.error(1e12) < 1e-2
     assert repr(motion) == "<Solution of <Oscillator x'' + x + eps*x^3 = 0, eps=1/2>>"
     everywhere = duffing.solution_function(order=8)
@@ -343,7 +344,9 @@ def test_an_averaged_motion_in_arrays() -> None:
     assert np.abs(np.array([x[0, 1], x[1, 0], x[1, 1], x[0, 0]]) - truth).max() < 1e-3
     for place, moment in zip(((1, 0), (1, 1)), motion.at([5.0, 25.0], digits=25)):
         for name, values in (("a", a), ("psi", psi), ("x", x)):
-            assert abs(float(moment[name]) - values[place]) <= float(moment[name].error or 0) < 1e-2
+            number = moment[name]
+            assert number is not None
+            assert abs(float(number) - values[place]) <= float(number.error or 0) < 1e-2
     again = pickle.loads(pickle.dumps(motion))
     assert np.array_equal(again(times)[0], a)
     assert np.isfinite(found["a"][1]).all() and found["a"][1].max() < 1e-2
@@ -357,8 +360,10 @@ def test_functions_to_many_digits(duffing: Oscillator) -> None:
     single = omega.at("1/2", 1, digits=25)
     assert len(many) == 2 and many[1] is not None and many[1] == single and many[0] != single
     number = omega.at("1/2", 1, digits=40)
+    assert number is not None
     assert abs(float(number) - float(omega(0.5, 1.0))) <= float(number.error or 0) + omega.with_error(0.5, 1.0)[1] < 1e-6
     (far,) = x.at([10.0], "1/4", 2)
+    assert far is not None
     # a cn(u, k) with sqrt(1 + rho) t = u, k^2 = rho/(2 + 2 rho), rho = eps a^2 = 1: mpmath 1.3.0.
     assert abs(float(far) - 1.5977495379948287) <= float(far.error or 0) < 1e-6
     solution = duffing.set(eps="1/4", amplitude=2).solution(order=16)

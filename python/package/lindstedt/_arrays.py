@@ -62,13 +62,19 @@ class _Made:
         return f"<{type(self).__name__} of {self._from[0]!r}{' over ' if names else ''}{names}>"
 
     def _displaced(self, times: Any, digits: int, limits: dict[str, float], **values: Value) -> list[dict[str, Any]]:
-        """The motion at times, by `evaluate`."""
-        times = each(times)
-        if not times:
+        """The motion at times in any order, by `evaluate`, which takes each once and in increasing order."""
+        asked = each(times)
+        if not asked:
             return []
-        found = self._evaluated(digits, {"times": times, **limits}, **values)
-        points: list[dict[str, Any]] = found["solution"]["values"]
-        return points
+        try:
+            places = [Fraction(exact(time)) for time in asked]
+        except ValueError:  # What is no fraction `evaluate` refuses itself.
+            points: list[dict[str, Any]] = self._evaluated(digits, {"times": asked, **limits}, **values)["solution"]["values"]
+            return points
+        order = sorted(set(places))
+        found = self._evaluated(digits, {"times": order, **limits}, **values)["solution"]["values"]
+        known: dict[Fraction, dict[str, Any]] = dict(zip(order, found))
+        return [known[place] for place in places if place in known]
 
     def _evaluated(self, digits: int, options: dict[str, Any], **values: Any) -> Answer:
         """The answer of `evaluate` to so many digits with the same options."""
@@ -130,9 +136,9 @@ class FrequencyFunction(_OfParameters):
     0.2 microseconds per point and core. Doubles, each with its estimated error. An amplitude that is not given is
     the oscillator's; where it does not vary, none is taken. Limits are `seconds` and `memory`."""
 
-    def at(self, small: Value, amplitude: Value | None = None, digits: int = 30, **limits: float) -> Number:
-        """omega at one point to so many digits, with its error: by `evaluate`."""
-        found: Number = self._evaluated(digits, limits, **self._values(small, amplitude))["frequency"]
+    def at(self, small: Value, amplitude: Value | None = None, digits: int = 30, **limits: float) -> Number | None:
+        """omega at one point to so many digits, with its error: by `evaluate`. None where not one digit is known."""
+        found: Number | None = self._evaluated(digits, limits, **self._values(small, amplitude))["frequency"]
         return found
 
     def at_each(
@@ -169,8 +175,8 @@ class SolutionFunction(_OfParameters):
 
     def at(
         self, times: Points | Value, small: Value, amplitude: Value | None = None, digits: int = 30, **limits: float
-    ) -> list[Number]:
-        """x at times and one point to so many digits, each with its error: by `evaluate`."""
+    ) -> list[Number | None]:
+        """x at times and one point to so many digits, each with its error: by `evaluate`. None where not one digit is known."""
         return [point["x"] for point in self._displaced(times, digits, limits, **self._values(small, amplitude))]
 
     def with_error(
@@ -193,8 +199,8 @@ class Solution(_Made):
     """x(t) by its harmonics: call it with an array of times. It is no number where its error is more than the motion.
     Limits are `seconds` and `memory`."""
 
-    def at(self, times: Points | Value, digits: int = 30, **limits: float) -> list[Number]:
-        """x at times to so many digits, each with its error: by `evaluate`."""
+    def at(self, times: Points | Value, digits: int = 30, **limits: float) -> list[Number | None]:
+        """x at times to so many digits, each with its error: by `evaluate`. None where not one digit is known."""
         return [point["x"] for point in self._displaced(times, digits, limits)]
 
     @property
@@ -261,8 +267,8 @@ class AveragedSolution(_Made):
         found = self.with_error(times, **limits)
         return found["a"][0], found["psi"][0], found["x"][0]
 
-    def at(self, times: Points | Value, digits: int = 30, **limits: float) -> list[dict[str, Number]]:
-        """a, psi, x at increasing times to so many digits, each with its error: by `evaluate`."""
+    def at(self, times: Points | Value, digits: int = 30, **limits: float) -> list[dict[str, Number | None]]:
+        """a, psi, x at times to so many digits, each with its error: by `evaluate`. None where not one digit is known."""
         found = self._displaced(times, digits, limits)
         return [{name: point[name] for name in ("a", "psi", "x")} for point in found]
 

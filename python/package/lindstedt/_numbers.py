@@ -72,6 +72,8 @@ def exact(value: Value) -> str:
         return plain(value, "1/3").replace("**", "^")
     if isinstance(value, Decimal) and value.is_finite():
         return str(value).lower()
+    if isinstance(value, numpy.longdouble) and math.isfinite(value) and value != float(value):
+        value = Fraction(*value.as_integer_ratio())
     if isinstance(value, (float, numpy.floating)) and math.isfinite(value):
         # A single precision number has a shorter decimal than the double that it is.
         return str(value) if isinstance(value, numpy.floating) else repr(float(value))
@@ -220,9 +222,11 @@ class Series(Sequence[Number]):
 
 
 def read(value: Any) -> Any:
-    """JSON with its numbers as `Number`."""
+    """JSON with its numbers as `Number`; None for those of which not one digit is known."""
     if isinstance(value, dict):
         if {"exact", "decimal", "error", "status"} == value.keys() and value["decimal"] is not None:
             return Number(value["exact"], value["decimal"], value["error"], value["status"])
-        return {key: read(item) for key, item in value.items()}
+        # A formula in symbols has no decimal; a number without one has no digit.
+        unknown = {"decimal", "status"} <= value.keys() and value.get("exact") is value["decimal"] is None
+        return None if unknown else {key: read(item) for key, item in value.items()}
     return [read(item) for item in value] if isinstance(value, list) else value
