@@ -287,6 +287,19 @@ fn asked(reader: &Reader<'_>, schema: &Schema) -> Result<Vec<Quantity>, FileErro
     schema.asked.iter().map(one).collect()
 }
 
+/// The Taylor polynomial of one over the factor of x'', in text that is taken.
+fn inverse_factor(equation: &Expression, names: &Names) -> Option<String> {
+    let wanted = Expression::ACCELERATION;
+    let with = equation.terms().iter().filter(|term| term.contains(&wanted));
+    let factor = with.map(|term| {
+        let others = term.factors().iter().filter(|e| **e != wanted);
+        Expression::Product(others.cloned().collect()).canonical()
+    });
+    let factor = Expression::Sum(factor.collect()).canonical();
+    let text = format!("taylor(1/({}), 9)", factor.print(&names.small, Style::Text));
+    (!factor.contains(&wanted) && parse_expression(&text, names).is_ok()).then_some(text)
+}
+
 /// An equation with x'' alone, or x' where there is no x'', and what stands for its parameters.
 fn read_equation(
     reader: &Reader<'_>,
@@ -308,7 +321,10 @@ fn read_equation(
                 let term = excerpt(&term.print(&names.small, Style::Text));
                 let kind = match equation.is_first_order() {
                     true => ParseErrorKind::VelocityInside { term },
-                    false => ParseErrorKind::AccelerationInside { term },
+                    false => {
+                        let inverse = inverse_factor(&equation, names);
+                        ParseErrorKind::AccelerationInside { term, inverse }
+                    }
                 };
                 (kind, at)
             }
