@@ -185,15 +185,23 @@ fn impact(
     names: &Names,
     meanings: &Meanings,
 ) -> Result<Impact, FileError> {
-    let expression = |text: &Spanned<String>| {
+    let expression = |key: &'static str, text: &Spanned<String>| {
         let found = parse_expression(text.get_ref(), names);
-        found.map(|e| meanings.put_in(&e)).map_err(|error| reader.inside(text, error))
+        let found = found.map_err(|error| reader.inside(text, error))?;
+        let on =
+            match found.nodes().find(|e| matches!(e, Expression::Time | Expression::Unknown(_))) {
+                None => return Ok(meanings.put_in(&found)),
+                Some(Expression::Time) => "t",
+                Some(_) => "x",
+            };
+        Err(reader.error(FileErrorKind::Wall { key, on }, text.span().start))
     };
     let crossings = [("rising", Crossing::Rising), ("falling", Crossing::Falling)];
     let (word, at) = (wall.crossing.get_ref(), wall.crossing.span());
     let crossing = reader.word("crossing", word, at, &crossings)?;
-    let position = expression(&wall.position)?;
-    Ok(Impact { position, crossing, restitution: expression(&wall.restitution)? })
+    let position = expression("position", &wall.position)?;
+    let restitution = expression("restitution", &wall.restitution)?;
+    Ok(Impact { position, crossing, restitution })
 }
 
 fn synchronous(

@@ -11,7 +11,7 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// Of a term that is not smooth or no polynomial.
-pub(super) fn in_numbers(parts: &Classification, file: &ProblemFile, reason: &Reason) -> String {
+pub(crate) fn in_numbers(parts: &Classification, file: &ProblemFile, reason: &Reason) -> String {
     let problem = &file.problem;
     if let Some(law) = power_law(problem) {
         return law;
