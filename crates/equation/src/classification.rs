@@ -80,6 +80,8 @@ pub enum Reason {
     DelayedLinearPart(Expression),
     /// No term in x at order zero.
     NoLinearPart,
+    /// A division by the small parameter, which does not cancel.
+    Divided(Expression),
     /// x'' - k x: no oscillation about x = 0.
     NegativeStiffness,
     /// The velocity occurs and omega_0 is irrational, so that time cannot be scaled exactly.

@@ -154,6 +154,10 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
             format!("{} is linear and has no factor {small}: the linear part has a delay", show(e))
         }
         Reason::NoLinearPart => format!("no term k*x stands in the equation without {small}"),
+        Reason::Divided(e) => format!(
+            "{} does not cancel: what the equation is at {small} = 0 does not follow from its form",
+            show(e)
+        ),
         Reason::NegativeStiffness => "the linear stiffness is negative".into(),
         Reason::IrrationalFrequency => "x' occurs and omega_0 is irrational".into(),
         Reason::UnknownFrequency => "x' occurs and omega_0 has no value".into(),
@@ -170,17 +174,14 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         Reason::NotPolynomial(e) if e.is_constant() => {
             format!("{} is irrational, and coefficients are rational numbers here", show(e))
         }
-        Reason::NotPolynomial(e) => format!(
-            "{} is no polynomial in x, x' and ln x^2 (of f regular at 0, taylor(f(z), 9) asks for one)",
-            show(e)
-        ),
+        Reason::NotPolynomial(e) => format!("{} is no polynomial in x, x' and ln x^2", show(e)),
         // A root of what is not 0 at rest is analytic there.
         Reason::NotReal(e @ Expression::Power(base, _)) if is_regular_at_rest(base) => format!(
             "{} is not real everywhere: write taylor({0}, 9), its polynomial of degree 9",
             show(e)
         ),
         Reason::NotReal(e) => format!(
-            "{} is not real everywhere: write x*(x^2)^delta, sign(x)*abs(x)^p, ln(x^2)",
+            "{} is not real everywhere: write sign(x)*abs(x)^p, x*(x^2)^{small}, ln(x^2)",
             show(e)
         ),
         Reason::Impact => "there is a wall".into(),

@@ -102,7 +102,10 @@ fn weakly_nonlinear(
     } else if let Some(e) = rest.find(&is_not_polynomial) {
         against.push(Reason::NotPolynomial(e.clone()));
     }
-    if parts.stiffness == Expression::integer(0) {
+    let divisor = |e: &Expression| crate::smooth::small_divisor(e).is_some();
+    if let Some(e) = rest.find(&divisor) {
+        against.push(Reason::Divided(e.clone()));
+    } else if parts.stiffness == Expression::integer(0) {
         against.push(Reason::NoLinearPart);
     }
     against.extend(not_weak(parts.strong.iter().map(|term| &term.term)));

@@ -1,6 +1,7 @@
-//! Powers of |x| as powers of x^2: identities that turn non-smooth notation into what the
-//! Lobachevsky ring contains.
+//! Identities that turn notation into what a ring contains: powers of |x| as powers of x^2, and terms divided by the
+//! small parameter that have it as a factor.
 
+use crate::monomials::{Monomial, expand};
 use crate::{Expression, Function};
 use rug::Rational;
 
@@ -28,6 +29,61 @@ impl Expression {
             _ => None,
         })
     }
+
+    /// The same expression without the divisors small^n that its terms have as a factor once they are multiplied out, as
+    /// in the pendulum of x/small. What does not cancel stays.
+    ///
+    /// ```
+    /// use lindstedt_equation::Expression;
+    /// let y = || Expression::Small * Expression::DISPLACEMENT;
+    /// let force = (y() - y().pow(3)) * Expression::Small.pow(-1);
+    /// assert_eq!(
+    ///     force.without_small_divisors().multiplied_out(),
+    ///     (Expression::DISPLACEMENT - Expression::Small.pow(2) * Expression::DISPLACEMENT.pow(3)).multiplied_out(),
+    /// );
+    /// ```
+    #[must_use]
+    pub fn without_small_divisors(&self) -> Self {
+        if !self.nodes().any(|e| small_divisor(e).is_some()) {
+            return self.clone();
+        }
+        self.map(&|e| match e {
+            Self::Product(factors) => divided(factors),
+            _ => None,
+        })
+    }
+}
+
+/// n of small^(-n).
+pub(crate) fn small_divisor(e: &Expression) -> Option<u32> {
+    small_power(e).filter(|n| *n < 0).map(i32::unsigned_abs)
+}
+
+/// n of small^n, also where it is written as the power of a power.
+fn small_power(e: &Expression) -> Option<i32> {
+    match e {
+        Expression::Small => Some(1),
+        Expression::Power(base, exponent) => {
+            let n = exponent.as_number().filter(Rational::is_integer)?;
+            small_power(base)?.checked_mul(n.numer().to_i32()?)
+        }
+        _ => None,
+    }
+}
+
+/// A product with small^(-n), every term of which has small^n as a factor; nothing for another one.
+fn divided(factors: &[Expression]) -> Option<Expression> {
+    let divisors = factors.iter().filter_map(small_divisor);
+    let n = divisors.fold(0, u32::saturating_add);
+    let others = factors.iter().filter(|e| small_divisor(e).is_none());
+    let all = expand(&Expression::Product(others.cloned().collect())).filter(|_| n > 0)?;
+    let quotient = |(monomial, q)| {
+        let mut monomial: Monomial = Monomial::clone(monomial);
+        monomial.order = monomial.order.checked_sub(n)?;
+        Some(all.tree(&monomial, q))
+    };
+    let terms: Option<Vec<_>> = all.terms.iter().map(quotient).collect();
+    Some(Expression::Sum(terms?).canonical())
 }
 
 /// q of |x|^q.

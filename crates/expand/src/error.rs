@@ -118,9 +118,9 @@ pub enum ExpandError {
         /// How many positive roots there are.
         count: usize,
     },
-    /// The amplitude equation is degenerate, a double root.
+    /// The amplitude equation is degenerate, a multiple root.
     #[error(
-        "the limit cycle is not hyperbolic at order 1: its amplitude equation has a double root"
+        "the averaged amplitude equation of order 1 has a multiple root: whether there is a limit cycle, it does not decide"
     )]
     DegenerateLimitCycle,
     /// The algebra could not solve at some order.

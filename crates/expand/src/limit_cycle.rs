@@ -8,7 +8,9 @@ use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::evaluator::Evaluator;
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra};
-use lindstedt_series::univariate::{count_positive_roots, rational_root, trim};
+use lindstedt_series::univariate::{
+    count_positive_roots, rational_root, simple_and_multiple, trim,
+};
 use rug::Rational;
 
 /// The positive root of S.
@@ -27,6 +29,11 @@ pub(crate) fn leading_amplitude<A: PhaseAlgebra>(
     }
     if polynomial.is_empty() {
         return Err(ExpandError::AmplitudeOfHigherOrder);
+    }
+    // A multiple root, rational or not, is no cycle that this order decides.
+    let [_, multiple] = simple_and_multiple(&polynomial);
+    if count_positive_roots(&multiple) > 0 {
+        return Err(ExpandError::DegenerateLimitCycle);
     }
     match count_positive_roots(&polynomial) {
         0 => Err(ExpandError::NoLimitCycle),

@@ -25,7 +25,7 @@ pub enum HopfError {
     Field,
     /// No pair of roots crosses the axis in the interval that was searched.
     #[error(
-        "no pair of roots of the characteristic function crosses the imaginary axis for {unknown} between {low} and {high}"
+        "at x = 0 no pair of roots of the characteristic function crosses the imaginary axis for {unknown} between {low} and {high}"
     )]
     NoPoint {
         /// The parameter.

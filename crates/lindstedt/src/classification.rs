@@ -1,5 +1,7 @@
 //! Which methods take an equation, and why the others do not.
 
+pub(crate) mod hint;
+
 use crate::refusal::{Refusal, Refused, averages};
 use crate::{Error, Exact};
 use lindstedt_derivation::{DerivationError, check_parameters, known_values};
@@ -59,6 +61,9 @@ const SMALL_TERMS: &str =
 /// and with a linear part that has a delay.
 const HOPF: &str = "with a factor eps, eps*x(t - T), it is averaged; `lindstedt derive --unknown NAME` finds the Hopf points of a \
      parameter and the cycles born there; `lindstedt simulate` takes it as it is";
+/// and with a division by the small parameter.
+const DIVIDED: &str =
+    "multiply it out, so that the factor cancels; `lindstedt simulate` takes it as it is";
 /// What a file says for the amplitude to be averaged.
 const AVERAGES: &str =
     "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";
@@ -133,7 +138,7 @@ pub fn check(
     if condition == Some(Condition::FreeAmplitude) {
         let plain = |r: &&Reason| match r {
             Reason::NoLinearPart | Reason::NotWeaklyNonlinear(_) => nothing_small,
-            Reason::Frequency(_) | Reason::DelayedLinearPart(_) => true,
+            Reason::Frequency(_) | Reason::DelayedLinearPart(_) | Reason::Divided(_) => true,
             _ => false,
         };
         let Some(reason) = against(Method::Averaging).find(plain) else { return Ok(()) };
@@ -154,8 +159,7 @@ pub fn check(
     };
     let averages = against(Method::Averaging).next().is_none()
         && parts.forcing.iter().all(|force| force.resonance.is_none());
-    let hint = next_best(parts, reason, nothing_small, averages);
-    let hint = hint.map_or(marks, ToOwned::to_owned);
+    let hint = next_best(parts, reason, file, averages).unwrap_or(marks);
     refused(at, reason_text(reason, small), hint)
 }
 
@@ -189,37 +193,32 @@ pub fn check_frequencies(
 fn next_best(
     parts: &Classification,
     reason: &Reason,
-    nothing_small: bool,
+    file: &ProblemFile,
     averages: bool,
-) -> Option<&'static str> {
+) -> Option<String> {
+    let nothing_small = !file.problem.equation.contains(&Expression::Small);
     let in_numbers = matches!(reason, Reason::NonSmooth(_) | Reason::NotPolynomial(_))
         && parts.takes(Method::TimeDomain);
     if nothing_small && *reason == Reason::NoSmallParameter {
-        None
-    } else if matches!(reason, Reason::DelayedLinearPart(_)) {
-        Some(HOPF)
-    } else if parts.takes(Method::Melnikov) {
-        Some("Melnikov's method takes equations of this kind: lindstedt threshold FILE")
-    } else if *reason == Reason::UnknownFrequency {
-        Some("--set NAME=VALUE gives it one")
-    } else if averages {
-        Some(AVERAGES)
-    } else if in_numbers {
-        Some(
-            "in numbers: `lindstedt simulate`; `evaluate --prove` where it is smooth; `derive --tier collocation` for k*x and \
-             forces of x alone",
-        )
-    } else if nothing_small {
-        None
-    } else {
-        Some(match reason {
-            Reason::NegativeStiffness => SADDLE,
-            Reason::NotWeaklyNonlinear(_) => SMALL_TERMS,
-            _ => {
-                "`lindstedt simulate` takes it; `lindstedt problems --show FILE` lists the methods"
-            }
-        })
+        return None;
     }
+    let hint = match reason {
+        Reason::DelayedLinearPart(_) => HOPF,
+        _ if parts.takes(Method::Melnikov) => {
+            "Melnikov's method takes equations of this kind: lindstedt threshold FILE"
+        }
+        Reason::UnknownFrequency => "--set NAME=VALUE gives it one",
+        _ if averages => AVERAGES,
+        _ if in_numbers => return Some(hint::in_numbers(parts, file, reason)),
+        Reason::Divided(_) => {
+            return Some(hint::divided(file).unwrap_or_else(|| DIVIDED.to_owned()));
+        }
+        _ if nothing_small => return hint::power_law(&file.problem),
+        Reason::NegativeStiffness => SADDLE,
+        Reason::NotWeaklyNonlinear(_) => SMALL_TERMS,
+        _ => "`lindstedt simulate` takes it; `lindstedt problems --show FILE` lists the methods",
+    };
+    Some(hint.to_owned())
 }
 
 /// A refusal of the engine; of the equation of a file with its place. Where no amplitude is constant,

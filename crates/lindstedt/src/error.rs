@@ -148,7 +148,7 @@ impl Refusal for Error {
                 let kind = if error.is_limit() { Undecided } else { Usage };
                 return (kind, "problem-file", error.hint());
             }
-            Self::Parse(_) => (Usage, "problem-file", ""),
+            Self::Parse(error) => return (Usage, "problem-file", error.hint()),
             Self::NoPeriodicOrbit { .. } => (NoAnswer, "no-periodic-orbit", "smaller --small"),
             Self::NoTruncatedFrequency { .. } => {
                 (NoAnswer, "no-truncated-frequency", "smaller --small, or another --order")

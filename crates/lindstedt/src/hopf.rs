@@ -216,13 +216,15 @@ fn is_polynomial(e: &Expression) -> bool {
     }
 }
 
+/// What to do where nothing is born at x = 0.
+const OTHER_REST: &str = "x = 0 is the equilibrium that is looked at: another one, x = c, is put there by x = c + y, x' = -r*(1 + x)*x(t - 1) \
+     for x' = r*x*(1 - x(t - 1)); --set NAME=VALUE searches about another value";
+
 impl Refusal for HopfError {
     fn parts(&self) -> (Kind, &'static str, String) {
         use Kind::{NoAnswer, Stopped, Undecided, Usage};
         let (kind, code, hint) = match self {
-            Self::NoPoint { .. } => {
-                (NoAnswer, "no-hopf-point", "--set NAME=VALUE searches about another value")
-            }
+            Self::NoPoint { .. } => (NoAnswer, "no-hopf-point", OTHER_REST),
             Self::NoRoot | Self::NoSpeed | Self::Unbounded => (NoAnswer, "no-hopf-point", ""),
             Self::Still { .. } => {
                 (NoAnswer, "no-hopf-point", "--unknown of a parameter of the linear part")

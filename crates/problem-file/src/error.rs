@@ -154,6 +154,8 @@ pub enum ParseErrorKind {
     AccelerationInside {
         /// The term.
         term: String,
+        /// The Taylor polynomial of one over the factor of x'', where it has one.
+        inverse: Option<String>,
     },
     /// A Taylor polynomial that is not known.
     #[error("no Taylor polynomial of {function} is known")]
@@ -231,7 +233,14 @@ impl ParseError {
                 "for example x'' + x + eps*x^3 = 0, or x' + alpha*x(t - 1)*(1 + x) = 0".into()
             }
             K::VelocityInside { .. } => "divide the equation by the factor of x'".into(),
-            K::AccelerationInside { .. } => "divide the equation by the factor of x''".into(),
+            K::AccelerationInside { inverse: Some(inverse), .. } => {
+                format!("divide the equation by the factor of x'': its other terms times {inverse}")
+            }
+            K::AccelerationInside { .. } => {
+                "divide the equation by the factor of x''; `lindstedt simulate` takes the quotient, an expansion \
+                 taylor(1/(1 + z), 9) where z vanishes with x, x' and the small parameter"
+                    .into()
+            }
             K::NoTaylor { .. } => {
                 "known: sin, cos, tan, exp, sinh, cosh, tanh, atan, ln(1 + z), (1 + z)^q".into()
             }

@@ -83,6 +83,14 @@ pub enum FileErrorKind {
         /// The name.
         name: String,
     },
+    /// A wall that depends on more than parameters.
+    #[error("{key} of the wall depends on {on}: it is an expression in parameters")]
+    Wall {
+        /// The key.
+        key: &'static str,
+        /// `t` or `x`.
+        on: &'static str,
+    },
     /// x(0) without x'(0), or the other way round.
     #[error("x and velocity belong together")]
     HalfAStart,
@@ -147,6 +155,11 @@ impl FileError {
             }
             FileErrorKind::Follows { .. } => {
                 "an expression in parameters with a value and pi, as in \"2*pi*k/omega\"".into()
+            }
+            FileErrorKind::Wall { on: "t", .. } => {
+                "in the frame of a wall at p(t), x = p(t) + y, it stands still at y = 0, and the force has -p'' besides: \
+                 A*w^2*sin(w*t) of p = A*sin(w*t)"
+                    .into()
             }
             FileErrorKind::HalfAStart => "give both, or a history alone".into(),
             FileErrorKind::Unknowns { .. } => "one equation with x'' for every unknown x".into(),

@@ -130,12 +130,12 @@ impl<'a> Parser<'a> {
     }
 
     fn equation(&mut self) -> Parsed {
-        let left = self.sum()?;
+        let left = self.sum()?.without_small_divisors();
         if !self.accept('=') {
             self.end()?;
             return Ok(left);
         }
-        let right = self.sum()?;
+        let right = self.sum()?.without_small_divisors();
         if self.sign() == Some('=') {
             return Err(self.error(ParseErrorKind::SecondEquality));
         }

@@ -185,15 +185,23 @@ fn impact(
     names: &Names,
     meanings: &Meanings,
 ) -> Result<Impact, FileError> {
-    let expression = |text: &Spanned<String>| {
+    let expression = |key: &'static str, text: &Spanned<String>| {
         let found = parse_expression(text.get_ref(), names);
-        found.map(|e| meanings.put_in(&e)).map_err(|error| reader.inside(text, error))
+        let found = found.map_err(|error| reader.inside(text, error))?;
+        let on =
+            match found.nodes().find(|e| matches!(e, Expression::Time | Expression::Unknown(_))) {
+                None => return Ok(meanings.put_in(&found)),
+                Some(Expression::Time) => "t",
+                Some(_) => "x",
+            };
+        Err(reader.error(FileErrorKind::Wall { key, on }, text.span().start))
     };
     let crossings = [("rising", Crossing::Rising), ("falling", Crossing::Falling)];
     let (word, at) = (wall.crossing.get_ref(), wall.crossing.span());
     let crossing = reader.word("crossing", word, at, &crossings)?;
-    let position = expression(&wall.position)?;
-    Ok(Impact { position, crossing, restitution: expression(&wall.restitution)? })
+    let position = expression("position", &wall.position)?;
+    let restitution = expression("restitution", &wall.restitution)?;
+    Ok(Impact { position, crossing, restitution })
 }
 
 fn synchronous(
@@ -287,6 +295,19 @@ fn asked(reader: &Reader<'_>, schema: &Schema) -> Result<Vec<Quantity>, FileErro
     schema.asked.iter().map(one).collect()
 }
 
+/// The Taylor polynomial of one over the factor of x'', in text that is taken.
+fn inverse_factor(equation: &Expression, names: &Names) -> Option<String> {
+    let wanted = Expression::ACCELERATION;
+    let with = equation.terms().iter().filter(|term| term.contains(&wanted));
+    let factor = with.map(|term| {
+        let others = term.factors().iter().filter(|e| **e != wanted);
+        Expression::Product(others.cloned().collect()).canonical()
+    });
+    let factor = Expression::Sum(factor.collect()).canonical();
+    let text = format!("taylor(1/({}), 9)", factor.print(&names.small, Style::Text));
+    (!factor.contains(&wanted) && parse_expression(&text, names).is_ok()).then_some(text)
+}
+
 /// An equation with x'' alone, or x' where there is no x'', and what stands for its parameters.
 fn read_equation(
     reader: &Reader<'_>,
@@ -308,7 +329,10 @@ fn read_equation(
                 let term = excerpt(&term.print(&names.small, Style::Text));
                 let kind = match equation.is_first_order() {
                     true => ParseErrorKind::VelocityInside { term },
-                    false => ParseErrorKind::AccelerationInside { term },
+                    false => {
+                        let inverse = inverse_factor(&equation, names);
+                        ParseErrorKind::AccelerationInside { term, inverse }
+                    }
                 };
                 (kind, at)
             }

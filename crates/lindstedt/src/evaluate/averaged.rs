@@ -1,10 +1,12 @@
 //! The question for an averaged motion.
 
 use super::Times;
+use crate::classification::hint::in_numbers;
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 use lindstedt_equation::Condition;
+use lindstedt_equation::classify::{Method, Reason};
 pub use lindstedt_evaluation::averaged::{Ended, Moment, Motion, Quantity, Start, SummedCycle};
 use rug::Rational;
 use std::time::Instant;
@@ -74,7 +76,7 @@ impl Oscillator {
         };
         let order = question.order.unwrap_or(ORDER);
         let motion = Motion::new(case.problem(), case.given(), order, &from, work);
-        let mut value = motion.map_err(|error| case.unevaluated(error.into()))?;
+        let mut value = motion.map_err(|error| case.not_averaged(error.into()))?;
         let times = question.times.as_ref().map(|times| times.list(TURNS * value.turn()));
         value.moments = times.as_ref().map(|times| value.at(times, work));
         let wanted = times.map_or(0, |times| times.len());
@@ -101,6 +103,22 @@ impl Oscillator {
 }
 
 impl Oscillator {
+    /// A refusal; of a law that is not smooth with what takes it.
+    fn not_averaged(&self, error: Error) -> Error {
+        let (error, parts) = (self.unevaluated(error), self.classify().ok());
+        let law = parts.as_ref().and_then(|parts| parts.non_smooth.first());
+        let (Some(parts), Some(law), "no-expansion") = (&parts, law, error.code()) else {
+            return error;
+        };
+        let reason = Reason::NonSmooth(law.clone());
+        let mut hint = in_numbers(parts, self.problem_file(), &reason);
+        if parts.takes(Method::Averaging) {
+            hint = format!("`derive --normalisation free` has the slow flow; {hint}");
+        }
+        let (kind, code, message) = (error.kind(), error.code(), error.to_string());
+        Refused { code, kind, message, hint }.into()
+    }
+
     /// The start of the file, or the amplitude of the problem at phase 0; where no motion is asked for
     /// an amplitude 1 shows the rates. With what is to be said of it.
     pub(super) fn averaged_start(&self, needed: bool) -> Result<(Start, Option<Remark>), Error> {

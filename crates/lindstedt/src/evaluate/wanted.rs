@@ -1,9 +1,10 @@
 //! Which orbit of which polynomial field a case asks for, and how x follows from it.
 
 use super::turn::TimeDomain;
-use crate::refusal::Refused;
+use crate::refusal::{Refusal, Refused};
 use crate::{Error, Exact, Oscillator};
 use lindstedt_algebra::Stop;
+use lindstedt_equation::print::Style;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression};
 use lindstedt_evaluation::setting::check_names;
 use lindstedt_number::ball::{Ball, Balls};
@@ -140,8 +141,23 @@ impl Oscillator {
     fn unproved(&self, failure: Failure) -> Error {
         match failure {
             Failure::NoValue(name) => self.unset(&name),
+            Failure::NotSmooth(ref e) => {
+                // What has no expansion has no estimate, either.
+                let hint = self.check().map_or_else(|error| error.hint(), |()| failure.hint());
+                let show = |e: &Expression| e.print(&self.problem().small, Style::Text);
+                let message = format!("{} is not smooth at {} = 0", show(e), show(corner(e)));
+                Refused::no_answer("no-proof", message, hint).into()
+            }
             other => other.into(),
         }
+    }
+}
+
+/// What vanishes where an expression is not smooth.
+fn corner(e: &Expression) -> &Expression {
+    match e {
+        Expression::Power(base, _) | Expression::Function(_, base) => corner(base),
+        other => other,
     }
 }
 

@@ -17,6 +17,10 @@ use lindstedt_simulate::SimulateError;
 const AT_RESONANCE: &str =
     "write the frequency at the resonance and the difference as a detuning: eps*sigma*x";
 
+/// Where a force is in resonance,
+const RESONANCE: &str = "averaging over one phase needs a force off resonance; at one `lindstedt respond` has the steady states, \
+     `lindstedt derive` the slow flow";
+
 /// What takes a delay where none is taken, or one without a small factor.
 const DELAY: &str = "`lindstedt derive` without --mode and --unknown averages a delay of order eps; of one unknown \
      `lindstedt simulate` takes it as it is";
@@ -47,7 +51,7 @@ impl Refusal for ExpandError {
         let (kind, code, hint) = match self {
             Self::Interrupted { .. } => (Stopped, "interrupted", ""),
             Self::Phase { source: PhaseError::Resonance { .. }, .. } => {
-                (NoAnswer, "resonance", "averaging needs a force off resonance")
+                (NoAnswer, "resonance", RESONANCE)
             }
             Self::Phase { source: PhaseError::NearMiss { .. }, .. } => {
                 (NoAnswer, "near-miss", AT_RESONANCE)

@@ -5,6 +5,8 @@ use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Kind, Oscillator, Refusal, SlowFlow, Work};
 use lindstedt_derivation::resonance::ResonanceError;
+use lindstedt_equation::Expression;
+use lindstedt_equation::classify::Method;
 use lindstedt_evaluation::rotating::NoFrame;
 use rug::Rational;
 
@@ -173,11 +175,6 @@ pub(super) fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
     if kind != Kind::NoAnswer || code == RESONANT {
         return error;
     }
-    let problem = oscillator.problem();
-    let other = match problem.conditions.is_empty() {
-        true => "`lindstedt threshold` and `lindstedt simulate` take motions beside a saddle",
-        false => "`lindstedt evaluate` has the periods of strongly nonlinear motions",
-    };
     if let Error::Derivation(DerivationError::Resonance(ResonanceError::NoRationalModes {
         squares,
     })) = &error
@@ -187,8 +184,38 @@ pub(super) fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
             .into();
     }
     let message = format!("no response from a slow flow: {error}");
-    let hint = if hint.is_empty() { other.to_owned() } else { format!("{hint}; {other}") };
+    let other = other_verb(oscillator);
+    let nothing_small = !oscillator.problem().equation.contains(&Expression::Small);
+    let hint = match hint.is_empty() || nothing_small {
+        true => other,
+        false => format!("{hint}; {other}"),
+    };
     Refused { code, kind, message, hint }.into()
+}
+
+/// What takes a problem without a slow flow.
+fn other_verb(oscillator: &Oscillator) -> String {
+    let problem = oscillator.problem();
+    let contains = |part: &Expression| problem.equation.contains(part);
+    let takes = |method| oscillator.classify().is_ok_and(|parts| parts.takes(method));
+    if takes(Method::Melnikov) {
+        return "`lindstedt threshold` and `lindstedt simulate` take motions beside a saddle"
+            .into();
+    }
+    if contains(&Expression::Time) {
+        let small = &problem.small;
+        return match contains(&Expression::Small) {
+            true => "`lindstedt simulate` takes it as it is".into(),
+            false => format!(
+                "{small}* before each of the small terms, the force too, and --set {small}=1; `lindstedt simulate` takes it as it is"
+            ),
+        };
+    }
+    // What has no expansion is refused with what takes it.
+    oscillator.check().map_or_else(
+        |error| error.hint(),
+        |()| "`lindstedt evaluate` has the periods of strongly nonlinear motions".into(),
+    )
 }
 
 /// Refuses a range of the small parameter that holds 0: there w' = 0 for every w, and branches would run through that.

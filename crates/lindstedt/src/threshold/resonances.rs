@@ -15,9 +15,11 @@ const DECIDING_BITS: u32 = 400;
 /// The resonances of orders 1 to `largest` that exist: periods 2 pi m/omega, with gamma_c for each.
 pub(super) fn list(subject: &Subject<'_>, largest: u32) -> Result<Vec<Resonance>, Error> {
     let Some(point) = &subject.point else {
-        let message = "subharmonic thresholds are known for x'' = a x - b x^3 with one harmonic force \
+        let message = "subharmonic thresholds are known for x'' = a x - b x^3 alone, with one harmonic force \
                        and friction T0 sgn(w) + t_1 w + t_3 w^3";
-        return Err(Refused::no_answer("no-answer", message, "").into());
+        let hint = "without --subharmonics `lindstedt threshold` has that of the homoclinic or heteroclinic orbit; \
+                    `lindstedt simulate --section stroboscopic` shows periodic motions";
+        return Err(Refused::no_answer("no-answer", message, hint).into());
     };
     let law = PolynomialFriction::cubic(point.dry.clone(), &point.alpha, point.beta.clone());
     let digits = subject.work.printed_digits();

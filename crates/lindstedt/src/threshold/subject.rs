@@ -37,7 +37,7 @@ impl<'a> Subject<'a> {
         let values = oscillator.form_values(&[])?;
         let problem = oscillator.problem();
         let found = MelnikovProblem::new(problem, &values);
-        let found = found.map_err(|why| unfit(oscillator, why))?.watched(&work.stop);
+        let found = found.map_err(|why| unfit(oscillator, &values, why))?.watched(&work.stop);
         let (point, lowest) = (found.stick_slip(), LowestHarmonic::find(problem, &values));
         Ok(Self { oscillator, work, values, found, point, lowest })
     }
@@ -121,24 +121,32 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// A refusal; of an equation without a force and without a value, that the value may be what is sought.
-fn unfit(oscillator: &Oscillator, why: Refusal) -> Error {
-    let sought = match &why {
-        Refusal::MissingValues { names }
-            if !oscillator.problem().equation.contains(&Expression::Time) =>
-        {
-            names.first().cloned()
-        }
-        _ => None,
+/// A refusal; of an equation without a value, that the value may be what is sought.
+fn unfit(oscillator: &Oscillator, values: &BTreeMap<String, Exact>, why: Refusal) -> Error {
+    let names = match &why {
+        Refusal::MissingValues { names } => names.clone(),
+        _ => Vec::new(),
     };
-    match (oscillator.unfit(why), sought) {
-        (Error::Refused(refused), Some(name)) => {
-            let hint = format!(
-                "{}; --unknown {name} finds the value for which the orbit persists",
-                refused.hint
-            );
+    let forced = oscillator.problem().equation.contains(&Expression::Time);
+    // With 1 for what has no value the equation shows which of them gamma_c is a value of.
+    let mut known = values.clone();
+    known.extend(names.iter().map(|name| (name.clone(), Exact::from(1))));
+    let lowest = LowestHarmonic::find(oscillator.problem(), &known);
+    let amplitude = lowest.and_then(|lowest| lowest.parameter).map(|(name, _)| name);
+    let sought = match (names.first(), amplitude.filter(|name| names.contains(name))) {
+        (Some(name), _) if !forced => {
+            format!("--unknown {name} finds the value for which the orbit persists")
+        }
+        (_, Some(name)) => format!(
+            "gamma_c is the critical value of {name} and does not depend on it: --set {name}=1"
+        ),
+        _ => return oscillator.unfit(why),
+    };
+    match oscillator.unfit(why) {
+        Error::Refused(refused) => {
+            let hint = format!("{}; {sought}", refused.hint);
             Refused { hint, ..refused }.into()
         }
-        (error, _) => error,
+        error => error,
     }
 }

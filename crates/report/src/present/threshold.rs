@@ -133,6 +133,17 @@ fn second_order(found: &SecondOrderThreshold) -> Vec<Line> {
     lines
 }
 
+/// What the orbits are: both loops of the closed form are homoclinic.
+fn kind(value: &HomoclinicThreshold) -> &'static str {
+    let checks = value.orbits.iter().filter_map(|orbit| orbit.check.as_deref());
+    let mut checks = checks.map(|check| check.starts_with("heteroclinic"));
+    match (checks.clone().any(|other| other), checks.any(|other| !other)) {
+        (true, true) => "homoclinic or heteroclinic",
+        (true, false) => "heteroclinic",
+        _ => "homoclinic",
+    }
+}
+
 /// The verdict with its distances as formulas.
 pub(super) fn verdict(words: &str) -> Text {
     let marked = words.replace("||v*| - V|", "$D$").replace("|v*|", "$|v*|$");
@@ -146,7 +157,10 @@ impl Present for Answer<HomoclinicThreshold> {
         lines.extend(orbits(value));
         lines.extend(value.second_order.iter().flat_map(second_order));
         let crossing = value.homoclinic_points.word();
-        lines.push(line("transversal homoclinic points at gamma", crossing));
+        lines.push((
+            Text::words(&format!("transversal {} points at gamma", kind(value))),
+            crossing.into(),
+        ));
         lines.push((Text::words("validity"), verdict(value.validity.verdict)));
         let remarks = value.remarks.iter().map(|remark| line("remark", remark.0.as_str()));
         lines.extend(remarks);
