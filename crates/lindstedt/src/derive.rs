@@ -14,7 +14,7 @@ use lindstedt_derivation::averaging::{self, AveragingSettings};
 use lindstedt_derivation::{DerivationError, Settings, check_delays, numeric};
 use lindstedt_equation::classify::{Method, Reason};
 use lindstedt_equation::description::Description;
-use lindstedt_equation::{AmplitudeRole, Condition};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression};
 use lindstedt_expand::ExpandError;
 use lindstedt_impact::divergence;
 use lindstedt_problem_file::PI;
@@ -210,10 +210,17 @@ impl Oscillator {
             averaging::average(self.problem(), &settings, &mut |progress| work.goes_on(progress))
         };
         let mut given = self.entering_coefficients();
-        // Beside numbers alone pi is one, too.
-        let open = self.problem().equation.parameters();
+        // In a delay, beside numbers alone, pi is one, too: sin(pi/2) is no symbol.
+        let equation = &self.problem().equation;
+        let late = |e: &Expression| match e {
+            Expression::Unknown(x) => {
+                x.delay.as_ref().is_some_and(|by| !by.parameters().is_empty())
+            }
+            _ => false,
+        };
+        let open = equation.parameters();
         let open: Vec<&String> = open.iter().filter(|name| !given.contains_key(*name)).collect();
-        if open == [PI] {
+        if open == [PI] && equation.nodes().any(late) {
             given.insert(PI.to_owned(), Exact::parse(PI)?);
         }
         let error = match average(&given) {
