@@ -158,7 +158,7 @@ impl Present for Answer<HomoclinicThreshold> {
         lines.extend(value.second_order.iter().flat_map(second_order));
         let crossing = value.homoclinic_points.word();
         lines.push((
-            Text::words(&format!("transversal {} points at gamma", kind(value))),
+            Text::words(format!("transversal {} points at gamma", kind(value))),
             crossing.into(),
         ));
         lines.push((Text::words("validity"), verdict(value.validity.verdict)));
