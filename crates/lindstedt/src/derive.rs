@@ -232,7 +232,6 @@ impl Oscillator {
         };
         let mut all: BTreeMap<String, Exact> = self.all_values().into_iter().collect();
         all.retain(|name, _| given.contains_key(name) || !self.given().contains_key(name));
-        all.extend(given.remove_entry(PI));
         let no_symbols = matches!(
             error,
             DerivationError::Expand(
@@ -240,11 +239,10 @@ impl Oscillator {
                     | ExpandError::Phase { source: PhaseError::Indivisible { .. }, .. }
             )
         );
-        if !no_symbols || all.keys().filter(|name| **name != PI).count() == given.len() {
+        if !no_symbols || all.len() == given.len() {
             return Err(self.refusal(error.into()));
         }
         let value = average(&all).map_err(|error| self.refusal(error.into()))?;
-        all.remove(PI);
         let remark =
             "the expansion is no formula in the parameters: all values of the problem are put in";
         Ok((value, all, Some(Remark(remark.to_owned()))))
