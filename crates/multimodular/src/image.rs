@@ -150,7 +150,10 @@ impl Job<'_> {
             Ok(trace) => trace,
             Err(unlucky) => return Ok(Err(unlucky)),
         };
-        self.check_trace(&algebra, &equation, &trace, degrees)?;
+        let checked = self.check_trace(&algebra, &equation, &trace, degrees);
+        // A product that was broken off leaves a residual.
+        self.go_on()?;
+        checked?;
         let series = self.series(&field, trace.squared)?;
         self.check_series(&field, series.each_ref())?;
         let lists = (0..=self.request.order).map(|n| series.each_ref().map(|list| list[n]));
@@ -290,7 +293,10 @@ impl Job<'_> {
         first: usize,
     ) -> Result<(), Error> {
         let expansion = self.stated(algebra, images)?;
-        let checked = check_from(algebra, equation, &expansion, first)?;
+        let checked = check_from(algebra, equation, &expansion, first);
+        // A product that was broken off leaves a residual.
+        self.go_on()?;
+        let checked = checked?;
         let broken = Error::from(ExpandError::Residual { order: checked });
         if checked == self.request.order { Ok(()) } else { Err(broken) }
     }
