@@ -371,7 +371,8 @@ fn outgrows(c: f64, sums: &[f64]) -> Option<f64> {
         return None;
     }
     if most == 0.0 {
-        return Some(0.0);
+        // A quotient may have underflowed.
+        return below.iter().all(|size| *size == 0.0).then_some(0.0);
     }
     // Falls with r. A sum of a few positive doubles and their powers is known to a few units.
     let rest = |r: f64| below.iter().fold(0.0, |sum, size| (sum + size) / r);
