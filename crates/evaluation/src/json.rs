@@ -165,6 +165,7 @@ impl Serialize for Evaluation {
         }
         map.serialize_entry("verdict", &self.verdict)?;
         map.serialize_entry("true_error", &self.true_error)?;
+        map.serialize_entry("measured_by", &self.measured_by)?;
         map.serialize_entry("asked", self.asked.map_or("auto", |_| method))?;
         let quantity = format!("T/(2*pi) as a series in {}", self.variable);
         map.serialize_entry("quantity", &quantity)?;

@@ -28,15 +28,17 @@ pub struct Evaluation {
     pub variable: String,
     /// The order of the expansion in the small parameter.
     pub order: usize,
-    /// The period by resummation; nothing where not one digit is supported. Without an error
-    /// where the coefficients are too few for an estimate.
+    /// The period by resummation; nothing where not one digit is supported. Its error is measured where the true period is
+    /// known, else estimated, else (from too few coefficients) unknown.
     pub period: Option<Number>,
     /// 2 pi over the period.
     pub frequency: Option<Number>,
     /// The period by the closed form, and that form.
     pub exact_period: Option<Number>,
-    /// |period - exact period|, where both are known.
+    /// |period - true period|, where that is known, too.
     pub true_error: Option<String>,
+    /// What tells that error, in the place of an estimate: `the closed form` or `Newton's orbit`.
+    pub measured_by: Option<&'static str>,
     /// Of a limit cycle, where it was asked for.
     pub stability: Option<Stability>,
     /// Orders 0, 1, ... of its Floquet exponent, and the value of the small parameter.
@@ -47,8 +49,10 @@ pub struct Evaluation {
     pub best_truncation: Option<(usize, Option<Number>)>,
     /// What is proved about the radius of convergence: its value, and why.
     pub radius: Option<(f64, &'static str)>,
-    /// The best that is known of the period: the closed form, else the estimate.
+    /// The best that is known of the period: the closed form, else Newton's orbit, else the estimate.
     pub best_period: Ball,
+    /// The sum of the series with its own estimate.
+    sum: Sum,
     /// Whether an error of the period is known.
     pub(crate) is_estimated: bool,
     /// Whether the coefficients are too few for an estimate: a few digits of the sum are shown.
@@ -102,6 +106,20 @@ impl Evaluation {
                 exponent(series, small, work.printed_digits(), &work.stop);
             Stability { floquet_exponent, stable }
         });
+    }
+
+    /// The period of the sum with its distance from that of an orbit, which Newton's method found, in the place of
+    /// an estimate.
+    pub fn measure(&mut self, orbit: &Ball, digits: usize, modes: usize) {
+        let sum = &mut self.sum;
+        let error = sum.balls.sub(&sum.value, orbit).abs_upper();
+        self.true_error = Some(short(&error));
+        sum.difference = Some(error);
+        (self.period, self.frequency) = (sum.number(&sum.period(), digits), sum.frequency(digits));
+        self.measured_by = Some("Newton's orbit");
+        (self.best_period, self.is_estimated) = (orbit.clone(), true);
+        let how = format!("; its error measured at the orbit of Newton's method, {modes} modes");
+        self.verdict.push_str(&how);
     }
 
     /// The same with a period in the place of the sum's; the error is an estimate, too.
@@ -170,7 +188,9 @@ pub fn period(
     let last = sample(resummed.bits);
     let picture = last.and_then(|sample| shared.picture(&sample, accuracy, stop));
     goes_on()?;
-    let (period, frequency) = (sum.number(&sum.period, digits), sum.frequency(digits));
+    let (period, frequency) = (sum.number(&sum.period(), digits), sum.frequency(digits));
+    let alone = Sum { difference: None, closed: None, ..sum.clone() };
+    let estimate = alone.number(&alone.period(), digits);
     let small = setting.small_alone().filter(|_| !source.exponent.is_empty());
     let exponent = small.map(|small| (source.exponent.clone(), small.clone()));
     let mut result = Evaluation {
@@ -184,9 +204,11 @@ pub fn period(
         resummed,
         best_truncation,
         radius: source.radius,
-        is_estimated: sum.is_estimated,
+        measured_by: sum.difference.as_ref().map(|_| "the closed form"),
+        is_estimated: sum.is_estimated(),
         no_estimate: sum.no_estimate,
-        best_period: sum.closed.unwrap_or(sum.period),
+        best_period: sum.closed.clone().unwrap_or_else(|| sum.period()),
+        sum,
         accuracy,
         verdict: String::new(),
         picture,
@@ -196,20 +218,22 @@ pub fn period(
         solution: None,
         improved: None,
     };
-    result.verdict = result.describe();
+    result.verdict = result.describe(estimate.as_ref());
     Ok(result)
 }
 
 /// The period that the sum of the series gives.
+#[derive(Clone, Debug)]
 struct Sum {
     balls: Balls,
     /// 2 pi times the factor of the series.
     scale: Ball,
-    period: Ball,
+    value: Ball,
+    /// Its estimated error.
+    estimate: Float,
     closed: Option<Ball>,
-    /// |period - closed|.
+    /// |value - true period|.
     difference: Option<Float>,
-    is_estimated: bool,
     no_estimate: bool,
 }
 
@@ -218,33 +242,38 @@ impl Sum {
         let balls = Balls::new(resummed.bits).with_guard(64);
         let scale = period_scale(source, balls)?;
         let estimate = &resummed.outcome.estimate;
-        let mut period = balls.mul(&balls.from_parts(&estimate.value, &estimate.error), &scale);
-        let closed = source.closed.as_ref().and_then(|(_, formula)| formula(balls));
         let value = balls.mul(&balls.from_parts(&estimate.value, &Float::new(53)), &scale);
+        let with_error = balls.mul(&balls.from_parts(&estimate.value, &estimate.error), &scale);
+        let closed = source.closed.as_ref().and_then(|(_, formula)| formula(balls));
         let difference = closed.as_ref().map(|exact| balls.sub(&value, exact).abs_upper());
-        if let Some(error) = &difference
-            && (!estimate.error.is_finite() || error > period.radius())
-        {
-            // Too few orders for an estimate, or an estimate that fails: the closed form measures
-            // the error.
-            period = balls.add_error(&value, error);
-        }
         let no_estimate = !estimate.error.is_finite() && few::has_no_estimate(source.known);
-        let is_estimated = period.is_finite();
-        if !is_estimated && no_estimate {
-            period = value;
+        let estimate = Float::with_val(53, with_error.radius());
+        Ok(Self { balls, scale, value, estimate, closed, difference, no_estimate })
+    }
+
+    /// Whether an error is known: measured or estimated.
+    fn is_estimated(&self) -> bool {
+        self.difference.is_some() || self.estimate.is_finite()
+    }
+
+    /// The sum with its error; without one where nothing is known.
+    fn period(&self) -> Ball {
+        match (&self.difference, self.no_estimate) {
+            (Some(error), _) => self.balls.add_error(&self.value, error),
+            (None, true) => self.value.clone(),
+            (None, false) => self.balls.from_parts(self.value.midpoint(), &self.estimate),
         }
-        Ok(Self { balls, scale, period, closed, difference, is_estimated, no_estimate })
     }
 
     fn number(&self, ball: &Ball, digits: usize) -> Option<Number> {
         // A measured error above the value leaves no digit, and a sum that is no period has none.
-        let size = self.period.midpoint();
-        let none = self.is_estimated && self.period.radius() >= size;
+        let period = self.period();
+        let size = period.midpoint();
+        let none = self.is_estimated() && period.radius() >= size;
         if *size <= 0 || none {
             None
         } else if self.no_estimate {
-            few::plain(ball, digits, self.is_estimated)
+            few::plain(ball, digits, self.is_estimated())
         } else {
             // Where there is a digit: not rounded to the error, a coarse decimal would be worse than the
             // estimate.
@@ -255,7 +284,7 @@ impl Sum {
 
     fn frequency(&self, digits: usize) -> Option<Number> {
         let two_pi = self.balls.mul_i64(&self.balls.pi(), 2);
-        self.number(&self.balls.div(&two_pi, &self.period)?, digits)
+        self.number(&self.balls.div(&two_pi, &self.period())?, digits)
     }
 }
 

@@ -173,16 +173,24 @@ impl Trajectory {
         })
     }
 
-    /// x at times, those that are reached before the work is stopped.
+    /// x at times, those that are reached before the work is stopped; with the true x the errors are distances from it, not
+    /// estimates.
     #[must_use]
-    pub fn table(&self, times: &[Exact], work: &Work) -> Displacements {
+    pub fn table(
+        &self,
+        times: &[Exact],
+        truth: Option<&(impl Fn(&Exact) -> Option<Ball> + Sync)>,
+        work: &Work,
+    ) -> Displacements {
         let mut points = Vec::new();
         for block in times.chunks(BLOCK) {
             if !work.goes_on(Progress::Parts(points.len(), times.len())) {
                 break;
             }
             let whole = points.len();
-            points.par_extend(block.par_iter().map(|time| self.at(time)));
+            points.par_extend(
+                block.par_iter().map(|time| self.beside(time, truth.and_then(|x| x(time)))),
+            );
             if work.stop.asked() {
                 points.truncate(whole);
             }
@@ -232,16 +240,21 @@ impl Trajectory {
     /// frequency is added.
     #[must_use]
     pub fn at(&self, time: &Exact) -> Displacement {
+        self.beside(time, None)
+    }
+
+    /// The same, its error the distance from the true x where that is known.
+    fn beside(&self, time: &Exact, truth: Option<Ball>) -> Displacement {
         let nothing = || Displacement {
             time: time.clone(),
             value: None,
             double: f64::NAN,
             error: f64::INFINITY,
         };
-        self.value(time).unwrap_or_else(nothing)
+        self.value(time, truth).unwrap_or_else(nothing)
     }
 
-    fn value(&self, time: &Exact) -> Option<Displacement> {
+    fn value(&self, time: &Exact, truth: Option<Ball>) -> Option<Displacement> {
         let bits = self.frequency.midpoint().prec();
         let balls = Balls::new(bits);
         let t = time.ball(balls);
@@ -251,6 +264,13 @@ impl Trajectory {
         let point = Point::Rational(tau.midpoint().to_rational()?);
         let (value, error) = self.sum(&point)?;
         let double = value.midpoint().to_f64();
+        if let Some(truth) = truth {
+            let balls = Balls::new(value.midpoint().prec());
+            let sum = balls.from_parts(value.midpoint(), &Float::new(53));
+            let ball = balls.add_error(&sum, &balls.sub(&sum, &truth).abs_upper());
+            let (value, error) = (Number::estimated(&ball, self.digits), ball.radius().to_f64());
+            return Some(Displacement { time: time.clone(), value, double, error });
+        }
         if !self.is_estimated || !error.is_finite() && few::has_no_estimate(self.order() + 1) {
             let (value, error) = (few::plain(&value, self.digits, false), f64::INFINITY);
             return Some(Displacement { time: time.clone(), value, double, error });

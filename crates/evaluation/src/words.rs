@@ -7,8 +7,8 @@ use lindstedt_series::resummation::{Growth, ResummationError, Resummed};
 use rug::Float;
 
 impl Evaluation {
-    /// What was done and why, in one or two sentences.
-    pub(crate) fn describe(&self) -> String {
+    /// What was done and why, in one or two sentences, with what the series alone has for an estimate.
+    pub(crate) fn describe(&self, estimate: Option<&Number>) -> String {
         let outcome = &self.resummed.outcome;
         let mut parts = Vec::new();
         let name = &self.variable;
@@ -43,27 +43,19 @@ impl Evaluation {
         let method = method_name(self.resummed.method);
         let degrees = outcome.degrees.map_or_else(String::new, |(l, m)| format!(" [{l}/{m}]"));
         let choice = self.choice();
-        parts.push(match &self.period {
-            Some(Number { error: Some(error), .. }) if self.no_estimate => format!(
-                "{method}{degrees} of order {}, no estimate from so few coefficients; against the \
-                 closed form the error is {error}",
-                self.order
-            ),
+        let order = self.order;
+        let error = self.true_error.as_deref();
+        let measured = error.map(|error| format!("; against the closed form the error is {error}"));
+        let measured = measured.unwrap_or_default();
+        parts.push(match estimate {
             Some(Number { error: Some(error), .. }) => {
                 format!("summed by {method}{degrees}{choice}, estimated error {error}")
             }
-            Some(_) => format!(
-                "{method}{degrees} of order {}, no estimate from so few coefficients",
-                self.order
+            _ if self.no_estimate => format!(
+                "{method}{degrees} of order {order}, no estimate from so few coefficients{measured}"
             ),
-            None if self.no_estimate => format!(
-                "{method}{degrees} of order {} gives not one digit: against the closed form the \
-                 error is {}",
-                self.order,
-                self.true_error.as_deref().unwrap_or("larger than the value")
-            ),
-            None => format!(
-                "{method}{degrees} gives not one digit: neighbouring approximants do not agree"
+            _ => format!(
+                "{method}{degrees} gives not one digit by its estimate: neighbouring approximants do not agree{measured}"
             ),
         });
         parts.join("; ")

@@ -1,6 +1,7 @@
 //! Derived once, evaluated often: the frequency at a million parameters, x(t) at a million times.
 
 use super::code::sampled;
+use super::improve::Beside;
 use super::{Evaluate, Fourier, PeriodicSolution, Question, SolutionFunction, Trajectory};
 use crate::{Answer, DerivationError, Error, Exact, Oscillator, Refused, Remark, Standing, Work};
 use lindstedt_equation::AmplitudeRole;
@@ -193,8 +194,10 @@ impl Oscillator {
         few_harmonics(harmonics)?;
         let (case, remarks) = self.settled()?;
         let mut found = case.period(question, work)?;
-        let improved = case.improve(&mut found, question, work);
-        let by_newton = improved.and_then(|it| Some((it.fourier(harmonics)?, it.frequency())));
+        let by_newton = match case.beside(&mut found, question, work) {
+            Beside::Better(it) => it.fourier(harmonics).map(|series| (series, it.frequency())),
+            _ => None,
+        };
         let (way, order) = match by_newton {
             Some((series, frequency)) => (Way::Newton(series, frequency), found.order),
             None => {

@@ -1,4 +1,4 @@
-//! More digits than the sum has: Newton's method in Fourier space, from the sum.
+//! More digits than the sum has, or its true error: Newton's method in Fourier space, from the sum.
 
 use super::wanted::Wanted;
 use super::{Displacement, Displacements, Estimated, Evaluate, Evaluation, Fourier};
@@ -10,8 +10,10 @@ use rug::Float;
 
 /// The largest mode of the inverse: about a second.
 const MOST_MODES: usize = 400;
-/// The orbit found must be that of the sum: within so many of its estimated errors.
+/// The orbit found must be that of the sum: within so many of its estimated errors,
 const SAME: u32 = 10;
+/// or within this part of the period where it measures them.
+const NEAR: f64 = 0.3;
 
 /// The orbit that Newton's method found.
 pub(super) struct Improvement {
@@ -21,29 +23,65 @@ pub(super) struct Improvement {
     rest: Ball,
 }
 
+/// What the orbit of a sum is good for.
+pub(super) enum Beside {
+    /// Nobody asked, or there is none that is that of the sum.
+    Nothing,
+    /// Work was stopped before it was found.
+    Stopped,
+    /// It has more digits than the sum, and is taken in its place.
+    Better(Improvement),
+    /// It tells the error of a sum that was asked for.
+    Truth(Improvement),
+}
+
 impl Oscillator {
-    /// Puts Newton's period in the place of one with fewer digits than were asked for, where the equation is
-    /// polynomial, there is no closed form, and neither order nor method was asked for. What does not agree with
-    /// the sum is not taken.
-    pub(super) fn improve(
+    /// Newton's orbit beside a period with fewer digits than were asked for, where the equation is polynomial. Where neither
+    /// order nor method was asked for and there is no closed form its period is put in the place of the sum's; else its
+    /// distance is put in the place of the sum's estimated error, beside a closed form that of x(t) alone.
+    pub(super) fn beside(
         &self,
         value: &mut Evaluation,
         question: &Evaluate,
         work: &Work,
-    ) -> Option<Improvement> {
-        let digits = work.printed_digits();
-        let enough = value.period.as_ref().is_some_and(|period| has(period, digits));
+    ) -> Beside {
         let asked = question.order.is_some() || question.method.is_some();
-        if asked || enough || value.exact_period.is_some() || work.doubles {
-            return None;
+        let digits = work.printed_digits();
+        let closed = value.exact_period.is_some();
+        let enough = value.period.as_ref().is_some_and(|period| has(period, digits));
+        if work.doubles || if closed { question.times.is_none() } else { enough } {
+            return Beside::Nothing;
         }
+        let replaces = !asked && !closed;
+        let same =
+            |period: &Ball| if replaces { agrees(value, period) } else { near(value, period) };
+        let Some((found, period, from)) = self.orbit_of_sum(value, question, work, same) else {
+            return if work.stop.asked() { Beside::Stopped } else { Beside::Nothing };
+        };
+        let modes = found.found.modes;
+        match (replaces, closed) {
+            (true, _) => value.improve(&period, digits, from, modes),
+            (false, true) => {}
+            (false, false) => value.measure(&period, digits, modes),
+        }
+        if replaces { Beside::Better(found) } else { Beside::Truth(found) }
+    }
+
+    /// The orbit that Newton's method finds from the sum, else from the motion in time, its period, and from what.
+    fn orbit_of_sum(
+        &self,
+        value: &Evaluation,
+        question: &Evaluate,
+        work: &Work,
+        same: impl Fn(&Ball) -> bool,
+    ) -> Option<(Improvement, Ball, &'static str)> {
         let wanted = self.wanted(work.digits).ok()?;
         let request =
             Request { digits: work.digits + 2, modes_limit: MOST_MODES, stop: work.stop.clone() };
         let found = |start: &Start| {
             let found = approximate(&wanted.field, &wanted.kind, start, &request).ok()?;
             let period = period(&found)?;
-            agrees(value, &period).then_some((period, found))
+            same(&period).then_some((period, found))
         };
         let sum = self.by_sum(Some(value), question, work);
         let by_sum = sum.and_then(|start| Some(("the sum", found(&start)?)));
@@ -52,10 +90,9 @@ impl Oscillator {
             Some(("the motion in time", found(&start)?))
         });
         let (from, (period, found)) = improved?;
-        value.improve(&period, digits, from, found.modes);
         let cycle = self.condition() == Some(Condition::LimitCycle);
         let rest = if cycle { found.rest() } else { Balls::new(64).zero() };
-        Some(Improvement { wanted, found, rest })
+        Some((Improvement { wanted, found, rest }, period, from))
     }
 }
 
@@ -63,7 +100,17 @@ impl Oscillator {
 const NEGLIGIBLE: f64 = 1e-15;
 
 impl Improvement {
-    /// x at times, x(t) = X(omega t + phase) with X'(0) = 0.
+    /// x at a time, x(t) = X(omega t + phase) with X'(0) = 0.
+    pub fn at(&self, time: &Exact, phase: &Exact) -> Option<Ball> {
+        let balls = Balls::new(self.found.frequency.prec());
+        let frequency = balls.from_parts(&self.found.frequency, &self.found.error);
+        let begin = balls.add(&self.rest, &phase.ball(balls));
+        let turned = balls.mul(&frequency, &time.ball(balls));
+        let (x, _) = self.wanted.state(self.found.at_phase(&balls.add(&turned, &begin)))?;
+        Some(x)
+    }
+
+    /// x at times.
     pub fn table(
         &self,
         value: &Evaluation,
@@ -71,13 +118,9 @@ impl Improvement {
         phase: &Exact,
         work: &Work,
     ) -> Displacements {
-        let balls = Balls::new(self.found.frequency.prec());
-        let frequency = balls.from_parts(&self.found.frequency, &self.found.error);
-        let begin = balls.add(&self.rest, &phase.ball(balls));
         let digits = work.printed_digits();
         let at = |time: &Exact| {
-            let turned = balls.mul(&frequency, &time.ball(balls));
-            let (x, _) = self.wanted.state(self.found.at_phase(&balls.add(&turned, &begin)))?;
+            let x = self.at(time, phase)?;
             let (double, error) = (x.midpoint().to_f64(), x.radius().to_f64());
             Some(Displacement::new(time.clone(), Number::estimated(&x, digits), double, error))
         };
@@ -138,7 +181,14 @@ fn has(number: &Number, digits: usize) -> bool {
     shown.bytes().filter(u8::is_ascii_digit).count() >= digits
 }
 
-/// Whether a period is that of the sum, where the sum has one.
+/// Whether a period is about that of the sum.
+fn near(value: &Evaluation, period: &Ball) -> bool {
+    let sum = value.best_period.midpoint();
+    let distance = Float::with_val(53, sum - period.midpoint()).abs();
+    distance <= Float::with_val(53, sum * NEAR).abs()
+}
+
+/// Whether a period is that of the sum within its error, where the sum has one.
 fn agrees(value: &Evaluation, period: &Ball) -> bool {
     let sum = &value.best_period;
     let distance = Float::with_val(53, sum.midpoint() - period.midpoint()).abs();

@@ -20,6 +20,7 @@ use code::sampled;
 pub use code::{Language, SolutionCode};
 use compiled::Way;
 pub use functions::ExpansionCode;
+use improve::Beside;
 use lindstedt_equation::monomials::{Terms, add, expand};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
@@ -112,16 +113,25 @@ impl Oscillator {
         let mut value = case.period(question, work)?;
         value.find_stability(work);
         let mut standing = Standing::Complete;
-        let improved = case.improve(&mut value, question, work);
+        let beside = case.beside(&mut value, question, work);
+        if matches!(beside, Beside::Stopped) {
+            let stopped = "stopped before Newton's method had the orbit: the series alone";
+            remarks.push(Remark(stopped.to_owned()));
+            standing = Standing::Stopped { done: 0 };
+        }
         if let Some(times) = &question.times {
-            let found = match improved {
-                Some(found) => {
+            let truth = match &beside {
+                Beside::Truth(orbit) => Some(|time: &Exact| orbit.at(time, &question.phase)),
+                _ => None,
+            };
+            let found = match &beside {
+                Beside::Better(found) => {
                     let last = value.best_period.midpoint().to_f64();
                     found.table(&value, &times.list(last), &question.phase, work)
                 }
-                None => {
+                _ => {
                     let path = case.trajectory(&value, question, work)?;
-                    path.table(&times.list(path.period), work)
+                    path.table(&times.list(path.period), truth.as_ref(), work)
                 }
             };
             if !found.complete {

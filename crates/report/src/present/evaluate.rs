@@ -61,7 +61,10 @@ type Line = (Text, Text);
 /// Period, frequency, closed form and true error.
 fn periods(answer: &Answer<Evaluation>) -> Vec<Line> {
     let value = &answer.value;
-    let known = if value.has_no_estimate() { "by the closed form" } else { "estimated" };
+    let known = match value.measured_by {
+        Some(by) => &format!("by {by}"),
+        None => "estimated",
+    };
     let number = |number: &Option<Number>| {
         let few = "no estimate from so few coefficients";
         Text::words(with_error(number.as_ref(), known, few, "not one digit"))
