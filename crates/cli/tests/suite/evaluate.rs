@@ -391,6 +391,27 @@ fn generated_code_deviates_as_it_says() {
     assert!((start - 1.0).abs() > 1e-8, "nothing is left out here: {start}");
 }
 
+/// The phase is that of the times whatever the harmonics are of: the sum in its default order, one of an order asked for, and
+/// Newton's orbit, which the sum of so strong a cycle makes way for.
+#[test]
+fn code_starts_at_the_phase() {
+    for (eps, order) in
+        [("eps=1/10", &[][..]), ("eps=1", &["--order", "24"][..]), ("eps=3", &[][..])]
+    {
+        let case = [&["van-der-pol", "--set", eps, "--phase", "1"], order].concat();
+        let found = json(&[&case[..], &["--times", "0"]].concat());
+        let expected = &found["solution"]["values"][0]["x"];
+        let code = ["--code", "python", "--harmonics", "40"];
+        let written = json(&[&case[..], &code].concat());
+        let terms = written["terms"].as_array().unwrap().iter();
+        let start: f64 = terms.map(|term| term[1].as_f64().unwrap()).sum();
+        let number = |key: &str| expected[key].as_str().unwrap().parse::<f64>().unwrap();
+        let allowed = written["deviation"].as_f64().unwrap() + number("error") + 1e-14;
+        let distance = (start - number("decimal")).abs();
+        assert!(distance <= allowed && allowed < 1e-3, "{eps}: {distance:e} {allowed:e}");
+    }
+}
+
 /// The flight is linear at every order: where not one digit of the growth rate is known, that is said.
 #[test]
 fn a_growth_rate_without_a_digit_is_said_to_have_none() {

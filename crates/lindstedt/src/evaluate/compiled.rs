@@ -175,8 +175,7 @@ impl Oscillator {
         let (order, at, tier) = (solved.order, solved.at, solved.way.tier());
         let value = match solved.way {
             Way::Newton(fourier, frequency) => PeriodicSolution::new(fourier, frequency, "newton"),
-            Way::Sum(path) => {
-                let fourier = sampled(&path, harmonics, &work.stop)?;
+            Way::Sum(path, fourier) => {
                 PeriodicSolution::new(fourier, path.estimated_frequency(), "expansion")
             }
         };
@@ -194,8 +193,9 @@ impl Oscillator {
         few_harmonics(harmonics)?;
         let (case, remarks) = self.settled()?;
         let mut found = case.period(question, work)?;
-        let by_newton = match case.beside(&mut found, question, work) {
-            Beside::Better(it) => it.fourier(harmonics).map(|series| (series, it.frequency())),
+        let beside = case.beside(&mut found, question, work);
+        let by_newton = match &beside {
+            Beside::Better(it) => it.fourier(harmonics, &question.phase).zip(Some(it.frequency())),
             _ => None,
         };
         let (way, order) = match by_newton {
@@ -203,8 +203,13 @@ impl Oscillator {
             None => {
                 let make = |asked: Question<'_>| Trajectory::without_error(asked, work);
                 let path = case.path(&found, question, make)?;
+                let sum = sampled(&path, harmonics, &work.stop)?;
+                let sum = match &beside {
+                    Beside::Truth(orbit) => orbit.measured(sum, &question.phase),
+                    _ => sum,
+                };
                 let order = path.order();
-                (Way::Sum(Box::new(path)), order)
+                (Way::Sum(Box::new(path), sum), order)
             }
         };
         Ok(Solved { at: found.at, order, way, remarks })
@@ -241,8 +246,8 @@ pub(super) struct Solved {
 pub(super) enum Way {
     /// By Newton's method in Fourier space: harmonics and frequency.
     Newton(Fourier, Estimated),
-    /// By the sum of its series at every phase.
-    Sum(Box<Trajectory>),
+    /// By the sum of its series at every phase, and its harmonics.
+    Sum(Box<Trajectory>, Fourier),
 }
 
 impl Way {
@@ -250,7 +255,7 @@ impl Way {
     pub fn tier(&self) -> &'static str {
         match self {
             Self::Newton(..) => "newton",
-            Self::Sum(_) => "resummation",
+            Self::Sum(..) => "resummation",
         }
     }
 }

@@ -135,13 +135,14 @@ impl Improvement {
         Displacements::by_newton(value.order, points, complete)
     }
 
-    /// The harmonics in omega t up to one; what is left out deviates by at most the sum of its sizes.
-    pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
+    /// The harmonics of x(t) = X(omega t + phase) in omega t up to one; what is left out deviates by at most the sum of its
+    /// sizes.
+    pub fn fourier(&self, harmonics: usize, phase: &Exact) -> Option<Fourier> {
         let start = self.found.start();
         if self.wanted.is_substituted() {
             return None;
         }
-        let (sin, cos) = self.rest.midpoint().to_f64().sin_cos();
+        let (sin, cos) = (self.rest.midpoint().to_f64() + phase.to_f64()).sin_cos();
         let (mut c, mut s) = (1.0, 0.0);
         let mut list = Vec::new();
         let modes = start.cosines.len().max(start.sines.len());
@@ -157,6 +158,17 @@ impl Improvement {
         let error = Some(NEGLIGIBLE * size);
         let deviation = deviation + NEGLIGIBLE * size;
         Some(Fourier { coefficients: list, deviation, error, largest_error: NEGLIGIBLE * size })
+    }
+
+    /// The harmonics of a sum with their distance from the orbit's in the place of estimates.
+    pub fn measured(&self, sum: Fourier, phase: &Exact) -> Fourier {
+        let harmonics = sum.coefficients.len().saturating_sub(1);
+        let Some(truth) = self.fourier(harmonics, phase) else { return sum };
+        let pairs = sum.coefficients.iter().zip(&truth.coefficients);
+        let distances = || pairs.clone().map(|(a, b)| (a.0 - b.0).hypot(a.1 - b.1));
+        let largest_error = truth.largest_error + distances().sum::<f64>();
+        let error = Some(distances().fold(truth.largest_error, f64::max));
+        Fourier { deviation: truth.deviation, error, largest_error, ..sum }
     }
 
     /// omega with its estimated error.

@@ -16,7 +16,6 @@ mod wanted;
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
-use code::sampled;
 pub use code::{Language, SolutionCode};
 use compiled::Way;
 pub use functions::ExpansionCode;
@@ -185,10 +184,7 @@ impl Oscillator {
             Way::Newton(series, omega) => {
                 SolutionCode::by_newton(name, (series, omega.value), language)
             }
-            Way::Sum(path) => {
-                let fourier = sampled(&path, harmonics, &work.stop)?;
-                SolutionCode::new(name, &path, fourier, language)
-            }
+            Way::Sum(path, fourier) => SolutionCode::new(name, &path, fourier, language),
         };
         let header = self.header(at, Some(order), tier, start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks: solved.remarks })
