@@ -1,6 +1,7 @@
 //! Steady states at resonance against periodic orbits that are proved without any expansion, and against closed forms.
 
 mod free;
+mod irrational;
 mod numbers;
 mod orbits;
 mod starts;

@@ -44,6 +44,16 @@ fn classes(squares: &[Rational]) -> (Vec<Vec<Rational>>, Vec<(usize, Rational)>)
     (rates, roots)
 }
 
+/// sum_j q_j times the multiples of the generators that nu_j has.
+fn combined(q: &[Rational], amplitudes: &[Vec<Rational>]) -> Vec<Rational> {
+    let longest = amplitudes.iter().map(Vec::len).max().unwrap_or(0);
+    let mut sum = vec![Rational::new(); longest];
+    for (q, own) in q.iter().zip(amplitudes) {
+        sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += Rational::from(q * part));
+    }
+    sum
+}
+
 fn middle(_: &BallRing, e: &Enclosure) -> Option<Rational> {
     e.0.midpoint().to_rational()
 }
@@ -78,7 +88,12 @@ pub(super) fn derived(
     let named_roots: Vec<_> = first.iter().map(name).collect();
     let roots: Vec<Ball> = squares.iter().filter_map(|square| ring.balls.sqrt(square)).collect();
     let generators = roots.into_iter().map(|ball| (Enclosure(ball), Whole::ONE)).collect();
-    let rates = Rates { amplitudes, ..job.rates(generators) };
+    let mut rates = Rates { amplitudes, ..job.rates(generators) };
+    for (rate, phase) in rates.forces.iter_mut().zip(&job.system.forces) {
+        if !phase.of_modes.is_empty() {
+            *rate = combined(&phase.of_modes, &rates.amplitudes);
+        }
+    }
     let scalars = Over::enclosures(ring, middle);
     let named = modes.as_ref().map(Modes::named).unwrap_or_default();
     let other = |name: &str| named.get(name).map(|ball| Enclosure((*ball).clone()));
@@ -104,6 +119,7 @@ pub(super) fn derived(
                 list[0].first().map(|term| term.im.clone()).unwrap_or_default();
         }
     }
+    flow.system.settle_rates();
     if let Some(modes) = &modes {
         let rows = || modes.shapes.iter().chain([&modes.squares]);
         let wide = rows().flatten().map(|ball| upward(ball.radius()));

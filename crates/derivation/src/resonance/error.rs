@@ -154,12 +154,6 @@ pub enum ResonanceError {
         /// What it is a factor of.
         unknown: String,
     },
-    /// A frequency that must be rational is the root of a rational number.
-    #[error("a frequency is irrational: the squares are {squares}")]
-    NoRationalModes {
-        /// The squares, where they are rational.
-        squares: String,
-    },
     /// The modes of a coupled linear part have no rational form.
     #[error(
         "strongly coupled modes without rational form: a square of their frequencies is irrational"

@@ -20,6 +20,9 @@ type Rate = Vec<Expression>;
 pub struct Phase {
     /// Omega: its multiples of the unit and of the independent parameters, in their order.
     pub rate: Vec<Rational>,
+    /// q_j of Omega = sum_j q_j nu_j, of a rate that is defined by irrational frequencies: then the multiple of the unit is
+    /// a rational number beside it, as theirs are. Empty for every other one.
+    pub of_modes: Vec<Rational>,
     /// sigma_1, sigma_2, ...
     pub detuning: Vec<Expression>,
     /// eta at t = 0: a number or a constant of parameters; 0 where no force has a phase.
@@ -187,6 +190,7 @@ impl Class {
         let scaled = |e: &Expression| (Expression::Number(scale.clone()) * e.clone()).canonical();
         Phase {
             rate: self.first.iter().map(|q| Rational::from(q * &scale)).collect(),
+            of_modes: Vec::new(),
             detuning: self.angle.rate.iter().map(scaled).collect(),
             start: scaled(&self.angle.start),
         }
@@ -351,21 +355,38 @@ pub(super) fn around(rate: &Rational, frequencies: &[Rational]) -> Vec<Rational>
 
 /// sum |k_j| + m and |sum_j k_j nu_j|/m of the resonances that are known.
 fn rates(frequencies: &[Rational]) -> Vec<(u32, Rational)> {
-    let mut list = Vec::new();
-    for k in combinations(frequencies.len()) {
-        let sum: Rational = k.iter().zip(frequencies).map(|(k, nu)| Rational::from(nu * *k)).sum();
+    let all = resonances(frequencies).map(|(size, q)| (size, sum(&q, frequencies)));
+    all.filter(|(_, at)| *at > 0).collect()
+}
+
+/// sum_j q_j nu_j.
+pub(super) fn sum(q: &[Rational], frequencies: &[Rational]) -> Rational {
+    q.iter().zip(frequencies).map(|(q, nu)| Rational::from(nu * q)).sum()
+}
+
+/// sum |k_j| + m and the k_j/m of the resonances that are known.
+fn resonances(frequencies: &[Rational]) -> impl Iterator<Item = (u32, Vec<Rational>)> {
+    combinations(frequencies.len()).into_iter().flat_map(|k| {
         let size: u32 = k.iter().map(|k| k.unsigned_abs()).sum();
-        let orders = 1..=EXACT.saturating_sub(size);
-        list.extend(orders.map(|m| (size + m, Rational::from(&sum / m).abs())));
-    }
-    list.retain(|(_, at)| !at.is_zero());
-    list
+        let share = move |m: u32| k.iter().map(|k| Rational::from((*k, m))).collect();
+        (1..=EXACT.saturating_sub(size)).map(move |m| (size + m, share(m)))
+    })
+}
+
+/// The q_j of the resonance sum_j q_j nu_j that a rate is up to the rounding of irrational frequencies, of the lowest order.
+pub(super) fn combination(rate: &Rational, frequencies: &[Rational]) -> Option<Vec<Rational>> {
+    let bound = Rational::from(rate / (Integer::from(1) << SAME)).abs();
+    let same = |q: &Vec<Rational>| (sum(q, frequencies) - rate).abs() <= bound;
+    let all = resonances(frequencies).filter(|(_, q)| same(q));
+    all.min_by_key(|(size, _)| *size).map(|(_, q)| q)
 }
 
 /// Of a resonance that holds exactly.
 const EXACT: u32 = 10;
 /// Of one that is looked for beside a rate.
 const NEAR: u32 = 4;
+/// Bits to which rates are the same that are rational numbers beside an irrational one.
+const SAME: u32 = 100;
 
 /// Whole numbers k_1, ..., k_M, not all zero, with sum |k_j| below [`EXACT`] or, of many unknowns, below what
 /// leaves some thousands; never below [`NEAR`].

@@ -137,12 +137,6 @@ pub(super) fn spectrum(mass: &Matrix, stiffness: &Matrix) -> Result<Spectrum, Re
     Ok(Spectrum { squares, inverse, shapes: Some(shapes) })
 }
 
-/// That frequencies are no rational numbers.
-pub(super) fn modes_refused(squares: &[Rational]) -> ResonanceError {
-    let list: Vec<String> = squares.iter().map(ToString::to_string).collect();
-    ResonanceError::NoRationalModes { squares: list.join(", ") }
-}
-
 pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let entry = |row: &Vec<Rational>, j: usize| {
         row.iter().zip(b).map(|(x, other)| Rational::from(x * &other[j])).sum()

@@ -185,16 +185,18 @@ impl SlowFlow {
 
     fn multiple(&self, q: &Rational, style: Style) -> Term {
         let unit = self.system.unit.as_ref().map(|unit| print_name(&unit.name, style));
-        Term { coefficient: q.clone(), factors: unit.into_iter().collect() }
+        let (coefficient, digits) = self.coefficient(q, style);
+        Term { coefficient, factors: digits.into_iter().chain(unit).collect() }
     }
 
     fn leading_rate(&self, l: usize, style: Style) -> Vec<Term> {
         let rate = self.system.forces.get(l).map_or(&[][..], |phase| &phase.rate);
         let unit = self.system.unit.as_ref().map(|unit| &unit.name);
         let names = std::iter::once(unit).chain(self.system.independent.iter().map(Some));
-        let term = |(coefficient, name): (&Rational, Option<&String>)| Term {
-            coefficient: coefficient.clone(),
-            factors: name.map(|name| print_name(name, style)).into_iter().collect(),
+        let term = |(q, name): (&Rational, Option<&String>)| {
+            let (coefficient, digits) = self.coefficient(q, style);
+            let name = name.map(|name| print_name(name, style));
+            Term { coefficient, factors: digits.into_iter().chain(name).collect() }
         };
         rate.iter().zip(names).filter(|(q, _)| !q.is_zero()).map(term).collect()
     }

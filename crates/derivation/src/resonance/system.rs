@@ -3,9 +3,10 @@
 use super::algebraic::{AlgebraicModes, Entry};
 use super::conserved::{axes, conserved_energy};
 use super::forces::{
-    Angles, InPhases, Phase, around, harmonic, is_internal, is_wave, leading_rates, near, phases,
+    Angles, InPhases, Phase, around, combination, harmonic, is_internal, is_wave, leading_rates,
+    near, phases, sum,
 };
-use super::modes::{Matrix, Spectrum, inverted, modes_refused, spectrum};
+use super::modes::{Matrix, Spectrum, inverted, spectrum};
 use super::unit::Unit;
 use super::{Names, ResonanceError};
 use crate::error::DerivationError as Error;
@@ -313,9 +314,10 @@ impl System {
         if !system.is_exact() {
             enclosed()?;
         }
-        if !system.is_exact() && !system.independent.is_empty() {
+        if let Some(first) = system.independent.first().filter(|_| !system.is_exact()) {
             // Nothing says that they are independent of square roots.
-            return Err(modes_refused(&system.squares).into());
+            let (first, second) = (first.clone(), "irrational frequencies".to_owned());
+            return Err(ResonanceError::NoRatio { first, second }.into());
         }
         let rate = system.force();
         let at = match detuned {
@@ -323,7 +325,7 @@ impl System {
             Detuned::Beside if rate > 0 => near(&rate, &system.frequencies),
             _ => None,
         };
-        Ok(match at.filter(|_| system.is_exact()) {
+        Ok(match at {
             Some(at) => system.detuned_from(at),
             None => system,
         })
@@ -360,8 +362,7 @@ impl System {
     #[must_use]
     pub fn resonances_around(&self) -> Vec<Rational> {
         let rate = self.beside.as_ref().map_or_else(|| self.force(), |beside| beside.rate.clone());
-        let taken = rate > 0 && self.is_exact();
-        if taken { around(&rate, &self.frequencies) } else { Vec::new() }
+        if rate > 0 { around(&rate, &self.frequencies) } else { Vec::new() }
     }
 
     /// Omega of the only force, where it is a multiple of the unit; else 0.
@@ -406,9 +407,16 @@ impl System {
         Some(angle.canonical().apply(function))
     }
 
+    /// Puts the rates that are sums of irrational frequencies beside these as they are now.
+    pub(super) fn settle_rates(&mut self) {
+        for phase in self.forces.iter_mut().filter(|phase| !phase.of_modes.is_empty()) {
+            phase.rate[0] = sum(&phase.of_modes, &self.frequencies);
+        }
+    }
+
     /// With the symbol of the detuning of the only force from a rate.
     fn detuned_from(mut self, at: Rational) -> Self {
-        let rate = self.force();
+        let (rate, exact) = (self.force(), self.is_exact());
         let [phase] = &mut self.forces[..] else { return self };
         let free = |name: &&str| !self.symbols.iter().any(|known| known == name);
         let symbol = ["sigma", "detuning", "sigma_0"].into_iter().find(free).unwrap_or("sigma_1");
@@ -418,6 +426,10 @@ impl System {
         }
         phase.detuning[0] = (phase.detuning[0].clone() + Expression::parameter(symbol)).canonical();
         phase.rate[0] = at;
+        if !exact {
+            phase.of_modes = combination(&phase.rate[0], &self.frequencies).unwrap_or_default();
+        }
+        self.settle_rates();
         self.beside = Some(Beside { rate, symbol: symbol.to_owned() });
         self
     }

@@ -128,12 +128,12 @@ fn a_force_at_the_resonance_of_the_last() {
 /// What has no slow flow says why, by name.
 #[test]
 fn refusals() {
-    use ResonanceError::{NoOscillation, NoRationalModes, NotAForce, NotWeaklyNonlinear, Unset};
+    use ResonanceError::{NoOscillation, NoRatio, NotAForce, NotWeaklyNonlinear, Unset};
     let is = |equation: &str, kind: fn(&ResonanceError) -> bool| {
         let error = refused(equation);
         assert!(kind(&error), "{equation}: {error}");
     };
-    is("x'' + 2*x = eps*F*cos(om*t)", |e| matches!(e, NoRationalModes { .. }));
+    is("x'' + 2*x = eps*F*cos(om*t)", |e| matches!(e, NoRatio { .. }));
     is("x'' - x = eps*F*cos(t)", |e| matches!(e, NoOscillation { .. }));
     is("x'' + x + x^3 = eps*cos(t)", |e| matches!(e, NotWeaklyNonlinear { .. }));
     is("x'' + x + x' = eps*cos(t)", |e| matches!(e, NotWeaklyNonlinear { .. }));

@@ -193,7 +193,7 @@ impl Oscillator {
         few_harmonics(harmonics)?;
         let (case, remarks) = self.settled()?;
         let mut found = case.period(question, work)?;
-        let beside = case.beside(&mut found, question, work);
+        let beside = case.beside(&mut found, (question, true), work);
         let by_newton = match &beside {
             Beside::Better(it) => it.fourier(harmonics, &question.phase).zip(Some(it.frequency())),
             _ => None,

@@ -38,18 +38,19 @@ pub(super) enum Beside {
 impl Oscillator {
     /// Newton's orbit beside a period with fewer digits than were asked for, where the equation is polynomial. Where neither
     /// order nor method was asked for and there is no closed form its period is put in the place of the sum's; else its
-    /// distance is put in the place of the sum's estimated error, beside a closed form that of x(t) alone.
+    /// distance is put in the place of the sum's estimated error, beside a closed form that of x(t) alone, where that is
+    /// asked for, too.
     pub(super) fn beside(
         &self,
         value: &mut Evaluation,
-        question: &Evaluate,
+        (question, with_motion): (&Evaluate, bool),
         work: &Work,
     ) -> Beside {
         let asked = question.order.is_some() || question.method.is_some();
         let digits = work.printed_digits();
         let closed = value.exact_period.is_some();
         let enough = value.period.as_ref().is_some_and(|period| has(period, digits));
-        if work.doubles || if closed { question.times.is_none() } else { enough } {
+        if work.doubles || if closed { !with_motion } else { enough } {
             return Beside::Nothing;
         }
         let replaces = !asked && !closed;

@@ -112,7 +112,7 @@ impl Oscillator {
         let mut value = case.period(question, work)?;
         value.find_stability(work);
         let mut standing = Standing::Complete;
-        let beside = case.beside(&mut value, question, work);
+        let beside = case.beside(&mut value, (question, question.times.is_some()), work);
         if matches!(beside, Beside::Stopped) {
             let stopped = "stopped before Newton's method had the orbit: the series alone";
             remarks.push(Remark(stopped.to_owned()));

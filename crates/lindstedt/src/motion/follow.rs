@@ -42,6 +42,23 @@ pub(crate) struct Harmonics {
     pub modes: Option<Vec<Vec<f64>>>,
 }
 
+/// Bits of the denominators of harmonics that have a period with the others.
+const LONGEST: u32 = 10;
+
+impl Harmonics {
+    /// p_j and q of the k_j = p_j/q; of one that has no period with the others p_j is no number: in a periodic motion this
+    /// harmonic is zero.
+    pub fn of_one_period(&self) -> (Vec<f64>, Integer) {
+        let is_whole = |k: &&Rational| k.denom().significant_bits() <= LONGEST;
+        let q = self.turns.iter().filter(is_whole).fold(Integer::from(1), |q, k| q.lcm(k.denom()));
+        let whole = |k: &Rational| match is_whole(&k) {
+            true => Rational::from(k * &q).to_f64(),
+            false => f64::NAN,
+        };
+        (self.turns.iter().map(whole).collect(), q)
+    }
+}
+
 /// The harmonics of the points of one period.
 type Reader<'a> = dyn Fn(&[Point<f64>]) -> Vec<[f64; 2]> + 'a;
 
@@ -58,10 +75,8 @@ struct Sampling {
 }
 
 impl Sampling {
-    fn of(turns: &[Rational]) -> Self {
-        let q = turns.iter().fold(Integer::from(1), |lcm, k| lcm.lcm(k.denom()));
-        let harmonic = |k: &Rational| Rational::from(k * &q).to_f64();
-        let harmonics: Vec<f64> = turns.iter().map(harmonic).collect();
+    fn of(wanted: &Harmonics) -> Self {
+        let (harmonics, q) = wanted.of_one_period();
         let most = harmonics.iter().fold(1.0f64, |most, p| most.max(p.abs()));
         let count = SAMPLES * (most as u32).min(64);
         let periods = PERIODS.div_ceil(q.to_u32().unwrap_or(1).max(1));
@@ -89,7 +104,7 @@ impl Oscillator {
         }
         let forcing = setup.forcing_at(axis)?.map(|period| period.float(64).to_f64());
         let forcing = forcing.ok_or_else(|| usage("no force with one period".to_owned()))?;
-        let Sampling { harmonics, count, part, periods } = Sampling::of(&wanted.turns);
+        let Sampling { harmonics, count, part, periods } = Sampling::of(wanted);
         let mut found = [Vec::new(), Vec::new()];
         let mut start: Vec<f64> = setup.flow.states().map(|x| x.float(64).to_f64()).collect();
         for (k, list) in found.iter_mut().enumerate() {
@@ -201,6 +216,9 @@ fn read(points: &[Point<f64>], harmonics: &[f64], modes: Option<&[Vec<f64>]>) ->
         }
     };
     let harmonic = |(j, p): (usize, &f64)| {
+        if p.is_nan() {
+            return [0.0; 2];
+        }
         let mut sum = [0.0, 0.0];
         for (m, point) in (1..).zip(points) {
             let angle = TAU * p * f64::from(m) / n;

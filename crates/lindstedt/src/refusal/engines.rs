@@ -207,9 +207,7 @@ impl Refusal for ResonanceError {
                 );
                 return (NoAnswer, "no-rational-modes", hint);
             }
-            Self::NoRationalModes { .. }
-            | Self::IrrationalMode { .. }
-            | Self::SoughtOfRoots { .. } => (
+            Self::IrrationalMode { .. } | Self::SoughtOfRoots { .. } => (
                 NoAnswer,
                 "no-rational-modes",
                 "needs rational frequencies; a small difference is a detuning eps*sigma*x",

@@ -111,10 +111,11 @@ pub(super) fn forcing_frequency(
         return Err(moving_frequency(&axis.name));
     }
     if let Some(other) = found.get(1) {
+        let [rate, other] = [(&first.slow, &rate), (&other.slow, &other.slow.system.force())]
+            .map(|(slow, rate)| slow.size(rate));
         let message = format!(
-            "the range of {} passes two resonances, {rate} and {} as rates of the force's phase",
+            "the range of {} passes two resonances, {rate} and {other} as rates of the force's phase",
             axis.name,
-            other.slow.system.force()
         );
         return Err(Refused::usage("sweep", message, "one resonance at a time").into());
     }

@@ -10,7 +10,7 @@ use lindstedt_simulate::{
     Doubles, Integrator, Model, Parameters, Report, Settings, System, Tick, monodromy,
 };
 use nalgebra::{Complex, DMatrix, DVector};
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
@@ -22,8 +22,6 @@ const CUT: f64 = 1e-9;
 const MOST_BOXES: usize = 20_000;
 /// Samples of the fastest harmonic per period of it.
 const SAMPLES: u32 = 48;
-/// Bits of the denominator of a k_j at most.
-const LONGEST: u32 = 10;
 /// Times the frequency of the first harmonic at most.
 const FASTEST: f64 = 64.0;
 
@@ -183,15 +181,8 @@ impl Flow {
         let parameters = Parameters::of_problem(problem, oscillator.given());
         let parameters = parameters.with(&problem.small, small.clone());
         let system = model.compile(Doubles, &parameters)?;
-        let is_whole = |k: &&Rational| k.denom().significant_bits() <= LONGEST;
-        let periodic = harmonics.turns.iter().filter(is_whole);
-        let q = periodic.fold(Integer::from(1), |lcm, k| lcm.lcm(k.denom()));
-        // Of one that has no period with the others the harmonic is zero, or the motion is no orbit.
-        let whole = |k: &Rational| match is_whole(&k) {
-            true => Rational::from(k * &q).to_f64(),
-            false => f64::NAN,
-        };
-        let turns: Vec<f64> = harmonics.turns.iter().map(whole).collect();
+        // One that has no period with the others is zero, or the motion is no orbit.
+        let (turns, q) = harmonics.of_one_period();
         let values = oscillator.rational_values();
         let value = |name: &str| values.get(name).cloned();
         let period = match subject.rotating.unforced() {

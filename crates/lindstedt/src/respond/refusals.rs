@@ -3,12 +3,10 @@
 use super::Respond;
 use crate::grid::Axis;
 use crate::refusal::Refused;
-use crate::{DerivationError, Error, Exact, Kind, Oscillator, Refusal, SlowFlow, Work};
-use lindstedt_derivation::resonance::ResonanceError;
+use crate::{Error, Exact, Kind, Oscillator, Refusal, SlowFlow, Work};
 use lindstedt_equation::Expression;
 use lindstedt_equation::classify::Method;
 use lindstedt_evaluation::rotating::NoFrame;
-use rug::Rational;
 
 /// A slow flow that was stopped at a lower order is that of other states; one that was stopped before the energy was
 /// looked for, which comes last, may have families of states.
@@ -26,7 +24,9 @@ pub(super) fn whole(slow: SlowFlow, order: usize, work: &Work) -> Result<SlowFlo
 
 /// Whether an error says that this name has no value.
 pub(super) fn is_unset(error: &Error, name: &str) -> bool {
-    error.code() == "no-value-set" && error.to_string().contains(name)
+    let ratio = "the ratio of ".to_owned() + name;
+    let text = error.to_string();
+    error.code() == "no-value-set" && text.contains(name) || text.starts_with(&ratio)
 }
 
 pub(super) fn no_frame(why: NoFrame) -> Error {
@@ -99,41 +99,9 @@ pub(super) fn uncoupled(slow: &SlowFlow, order: usize) -> Error {
         return Refused::no_answer("no-response", message, hint).into();
     }
     let message = format!("up to order {order} no resonance couples the force to an amplitude");
-    let hint = match &slow.system.squares[..] {
-        _ if slow.system.is_exact() || slow.system.algebraic.is_some() => {
-            "a frequency nearer to a resonance (or the detuning as a parameter)".to_owned()
-        }
-        [square] => at_root(&square.to_string(), beside(&slow.system.force(), square)),
-        _ => "irrational frequencies have no number for a combination of them: squares of rational numbers beside \
-              theirs, the differences as small terms, as 289/144*y - 1/144*y for 2*y"
-            .to_owned(),
-    };
-    Refused::no_answer("no-response", message, format!("{hint}, a higher --order")).into()
-}
-
-/// How a force beside an irrational frequency is written: no number is at its resonance. With the multiple of the frequency
-/// that it is beside, and what it is off.
-fn at_root(square: &str, multiple: Option<(Rational, f64)>) -> String {
-    let (multiple, off) = match multiple {
-        Some((multiple, off)) if multiple != 1 => {
-            (format!("{multiple}*"), format!(", eps*sigma = {off:.6}"))
-        }
-        Some((_, off)) => (String::new(), format!(", eps*sigma = {off:.6}")),
-        None => Default::default(),
-    };
-    format!(
-        "a number is at no resonance of an irrational frequency: the root with a detuning, cos(({multiple}sqrt({square}) + eps*sigma)*t){off}"
-    )
-}
-
-/// The multiple p/q of a root, p and q at most 3, that is nearest to a frequency, and the distance from it.
-fn beside(rate: &Rational, square: &Rational) -> Option<(Rational, f64)> {
-    let (rate, root) = (rate.to_f64(), square.to_f64().sqrt());
-    let all = (1..=3).flat_map(|q| (1..=3).map(move |p| Rational::from((p, q))));
-    let off = |multiple: &Rational| rate - multiple.to_f64() * root;
-    let nearest = all.min_by(|a, b| off(a).abs().total_cmp(&off(b).abs()))?;
-    let distance = off(&nearest);
-    (rate > 0.0).then_some((nearest, distance))
+    let hint =
+        "a frequency nearer to a resonance (or the detuning as a parameter), a higher --order";
+    Refused::no_answer("no-response", message, hint).into()
 }
 
 pub(super) fn no_resonance(name: &str) -> Error {
@@ -174,14 +142,6 @@ pub(super) fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
     let (kind, code, hint) = error.parts();
     if kind != Kind::NoAnswer || code == RESONANT {
         return error;
-    }
-    if let Error::Derivation(DerivationError::Resonance(ResonanceError::NoRationalModes {
-        squares,
-    })) = &error
-        && !squares.contains(',')
-    {
-        return Refused { code, kind, message: error.to_string(), hint: at_root(squares, None) }
-            .into();
     }
     let message = format!("no response from a slow flow: {error}");
     let other = other_verb(oscillator);

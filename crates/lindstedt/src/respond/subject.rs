@@ -22,7 +22,7 @@ use lindstedt_number::interval::Interval;
 use lindstedt_orbit::steady::{
     self, Course, Limits, System, Value, all_zeros, bound, follow, outermost,
 };
-use rug::Rational;
+use rug::{Float, Rational};
 
 /// The box is so many times as large as that of order one, for higher orders.
 const ROOM: f64 = 1.25;
@@ -287,6 +287,20 @@ impl<'a> Subject<'a> {
         self.slow.system.wave(name, &value, Balls::new(BITS))
     }
 
+    /// A detuning of a given frequency from that of a resonance, which is known within the radius of the slow flow.
+    fn detuned(&self, detuning: &Rational) -> Value {
+        let multiples = self.slow.system.forces.iter().flat_map(|phase| &phase.of_modes);
+        let multiples: f64 = multiples.map(|q| q.to_f64().abs()).sum();
+        match (&self.slow.enclosed, &self.small) {
+            (Some(enclosed), Some(small)) if multiples > 0.0 => {
+                let balls = Balls::new(BITS);
+                let within = Float::with_val(53, multiples * enclosed.radius / small.to_f64());
+                Value::from(&balls.add_error(&balls.from_rational(detuning), &within))
+            }
+            _ => Value::Rational(detuning.clone()),
+        }
+    }
+
     /// The values of the flow's parameters, those of what varies as given.
     pub(super) fn values(&self, varying: [Option<&Exact>; 2]) -> Values {
         let small = &self.oscillator.problem().small;
@@ -294,7 +308,7 @@ impl<'a> Subject<'a> {
             let beside = self.slow.system.beside.as_ref().filter(|it| it.symbol == name)?;
             let away = (&beside.rate - self.slow.system.force()) / self.small.as_ref()?;
             Some(match &self.slow.system.unit {
-                None => Value::Rational(away),
+                None => self.detuned(&away),
                 Some(_) => Value::from(&Balls::new(BITS).mul_rational(&self.unit()?, &away)),
             })
         };
@@ -304,6 +318,10 @@ impl<'a> Subject<'a> {
         };
         let place = |name: &String| self.swept.iter().position(|it| it.as_ref() == Some(name));
         let value = |name: &String| match place(name) {
+            Some(0) if self.factor.is_some() => {
+                let varies = |value: &Exact| Some(self.detuned(value.as_rational()?));
+                varying[0].and_then(varies)
+            }
             Some(place) => varying[place].map(Value::from),
             None if **name == **small => self.small.clone().map(Value::Rational),
             None => detuning(name).or_else(|| known(name)),

@@ -89,6 +89,7 @@ impl Subject<'_> {
         let away = beside.map(|it| (&it.rate, Rational::from(&it.rate - &force)));
         let away = away.filter(|(rate, away)| away.clone().abs() > tenth * *rate);
         let detuned = away.map(|(rate, away)| {
+            let [force, away] = [&force, &away].map(|rate| self.slow.size(rate));
             Remark(format!(
                 "the frequency of the force, {rate}, counts as that of the resonance, {force}, with a detuning of {away}"
             ))
