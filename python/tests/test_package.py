@@ -365,7 +365,9 @@ def test_functions_to_many_digits(duffing: Oscillator) -> None:
     (far,) = x.at([10.0], "1/4", 2)
     assert far is not None
     # a cn(u, k) with sqrt(1 + rho) t = u, k^2 = rho/(2 + 2 rho), rho = eps a^2 = 1: mpmath 1.3.0.
-    assert abs(float(far) - 1.5977495379948287) <= float(far.error or 0) < 1e-6
+    known = Decimal("1.59774953799482865242137")
+    assert far.decimal is not None and far.error is not None
+    assert abs(Decimal(far.decimal) - known) <= Decimal(far.error) < Decimal("1e-18")
     solution = duffing.set(eps="1/4", amplitude=2).solution(order=16)
     assert solution.at(10.0) == [far] and abs(float(solution(10.0)) - float(far)) <= float(solution.error(10.0))
     again = pickle.loads(pickle.dumps(omega))
