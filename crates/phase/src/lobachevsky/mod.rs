@@ -13,7 +13,7 @@ mod formal;
 mod integral;
 mod word;
 
-pub use clock::{Clock, LambdaMonomial, Still, Unfolding};
+pub use clock::{LambdaMonomial, Still, Unfolding};
 pub use formal::Formal;
 pub use word::Word;
 
