@@ -8,10 +8,10 @@ use lindstedt_expand::{
     clock_variable, compile, expand, expand_clock,
 };
 use lindstedt_phase::Lobachevsky;
-use lindstedt_phase::lobachevsky::{Formal, Unfolding, Word};
+use lindstedt_phase::lobachevsky::{Unfolding, Word};
 use rug::Rational;
 
-type Still = Lobachevsky<Formal<PolynomialRing>>;
+type Still = Lobachevsky<PolynomialRing>;
 
 /// Formal functions have the Taylor coefficients S_n.
 struct Sums;
@@ -21,15 +21,6 @@ fn sum(n: usize) -> Polynomial {
 }
 
 impl Binding<PolynomialRing> for Sums {
-    fn parameter(&self, _: &str) -> Option<Polynomial> {
-        None
-    }
-    fn formal(&self, _: &str, n: usize) -> Option<Polynomial> {
-        Some(sum(n))
-    }
-}
-
-impl Binding<Formal<PolynomialRing>> for Sums {
     fn parameter(&self, _: &str) -> Option<Polynomial> {
         None
     }
@@ -62,7 +53,7 @@ struct Case {
 }
 
 fn still(equation: &Expression, order: usize) -> Result<Case, ExpandError> {
-    let algebra = Lobachevsky::new(Formal(PolynomialRing::default()));
+    let algebra = Lobachevsky::formal(PolynomialRing::default());
     let equation = compile(&algebra, equation, &Sums, order)?;
     let clock = expand_clock(&algebra, &equation, &request(order), &mut |_| true)?;
     Ok(Case { algebra, equation, clock })
@@ -131,7 +122,7 @@ fn the_work_is_that_of_still_functions() {
 fn other_equations_are_refused() {
     let damped = power_law() + Expression::Small * Expression::VELOCITY;
     assert_eq!(still(&damped, 2).err(), Some(ExpandError::NotOneClock { order: 0 }));
-    let algebra = Lobachevsky::new(Formal(PolynomialRing::default()));
+    let algebra = Lobachevsky::formal(PolynomialRing::default());
     let compiled = compile(&algebra, &power_law(), &Sums, 2).unwrap();
     let harmonic = Request { condition: Condition::FundamentalAmplitude, ..request(2) };
     let refused = expand_clock(&algebra, &compiled, &harmonic, &mut |_| true);

@@ -13,16 +13,16 @@ mod leaf;
 mod monomials;
 mod unfolding;
 
-use super::{Factor, Lobachevsky, LobachevskyElement, LogPolynomial, Moments, Word};
+use super::{Factor, Lobachevsky, LobachevskyElement, LogPolynomial, Word};
 use leaf::factorial;
-use lindstedt_algebra::{ClockAlgebra, Ring, StillAndClock};
+use lindstedt_algebra::{ClockAlgebra, RationalAlgebra, Ring, StillAndClock};
 use lindstedt_coeff::sparse::Sparse;
 use rug::Rational;
 
 pub use monomials::LambdaMonomial;
 pub use unfolding::Unfolding;
 
-impl<C: Moments> ClockAlgebra for Lobachevsky<C> {
+impl<C: RationalAlgebra> ClockAlgebra for Lobachevsky<C> {
     fn pace(&self, numbers: &[C::Element]) -> Self::Element {
         let terms = (1u16..).zip(numbers).map(|(m, c)| {
             let inverse = Rational::from((1, factorial(m.into())));
@@ -61,5 +61,5 @@ impl<C: Moments> ClockAlgebra for Lobachevsky<C> {
     }
 }
 
-/// An element of the Lobachevsky ring over the formal constants of a clock.
+/// An element of the Lobachevsky ring over the constants of a clock.
 pub type Still<C> = LobachevskyElement<<C as Ring>::Element>;
