@@ -14,8 +14,10 @@
 
 use super::flow::Symbols;
 use super::modes::{Matrix, spectrum};
+use super::prepared::Prepared;
 use super::print::print_powers;
-use super::system::{Prepared, refuse_delays, separated, symbols};
+use super::separated::separated;
+use super::system::{refuse_delays, symbols};
 use super::unit::Unit;
 use super::{
     Element, Enclosed, Names, ResonanceError, SlowFlow, Terms, collected, refuse_near_miss,
