@@ -48,11 +48,15 @@ pub struct System {
     pub beside: Option<Beside>,
 }
 
-/// From which rate a force is detuned: one that it lies beside, none, or this one.
-#[derive(Clone, Copy)]
-pub(super) enum Detuned<'a> {
+/// From which rate the only force is detuned.
+#[derive(Clone, Copy, Debug)]
+pub enum Detuned<'a> {
+    /// From that of a resonance that it lies beside, if there is one.
     Beside,
+    /// From none, however small the small parameter becomes: sigma = (omega - Omega)/eps grows without bound then, and no
+    /// order of the detuned flow is small beside the one before.
     Not,
+    /// From this one, in multiples of the unit: one of [`System::resonances_around`].
     From(&'a Rational),
 }
 
