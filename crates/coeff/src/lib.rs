@@ -2,6 +2,7 @@
 
 pub mod amplitude;
 pub mod closed_forms;
+mod constant;
 pub mod floats;
 pub mod packed;
 pub mod parameters;
@@ -12,4 +13,5 @@ mod product;
 pub mod quotient;
 pub mod sparse;
 
+pub use constant::constant;
 pub use polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};

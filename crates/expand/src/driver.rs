@@ -9,68 +9,21 @@
 //! of f_n in cos psi fixes W_n, the part in sin psi fixes the amplitude of order n - 1 of a
 //! limit cycle or must vanish; the rest is solved by the algebra. No branch on the order number.
 
+mod convolution;
+
 use crate::ExpandError;
+use crate::ahead::Ahead;
 use crate::compile::{Equation, Node};
-use crate::evaluator::{Ahead, Evaluator};
+use crate::evaluator::Evaluator;
+use crate::expansion::{Expansion, OrderWork};
 use crate::limit_cycle;
+use convolution::Combined;
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::Condition;
 use rug::Rational;
 use std::ops::RangeInclusive;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
-
-/// What one order cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OrderWork {
-    /// The order n.
-    pub order: usize,
-    /// Products of phase functions formed for it.
-    pub products: u64,
-    /// Terms of x_n.
-    pub terms: usize,
-}
-
-/// An expansion with its normalisation: x = sum x_n(psi) eps^n with psi = omega t and
-/// omega^2 = kappa sum W_n eps^n, for n = 0, ..., order; coefficients are elements of the algebra that
-/// derived it and mean nothing without it.
-#[derive(Clone, Debug)]
-pub struct Expansion<A: PhaseAlgebra> {
-    /// What fixes the amplitude, and so the meaning of every coefficient.
-    pub condition: Condition,
-    /// kappa, the factor of x at order zero.
-    pub stiffness: Constant<A>,
-    /// W_0 = 1, W_1, ...: omega^2 = kappa sum W_n eps^n.
-    pub frequency_squared: Vec<Constant<A>>,
-    /// x(0), order by order.
-    pub amplitude: Vec<Constant<A>>,
-    /// x_0, x_1, ... as functions of psi = omega t.
-    pub solution: Vec<A::Element>,
-    /// The work, order by order.
-    pub work: Vec<OrderWork>,
-    /// Coefficients of the logarithms, exponentials and formal functions of the equation, by
-    /// node: the residual check verifies them by their differential equations.
-    pub certificates: Vec<Vec<A::Element>>,
-}
-
-impl<A: PhaseAlgebra> Expansion<A> {
-    /// The highest order derived.
-    pub fn order(&self) -> usize {
-        self.solution.len() - 1
-    }
-
-    /// f_n, the right side of x_n'' + x_n = f_n - W_n x_0'' (zero at order zero and beyond the
-    /// orders derived).
-    pub fn right_side(&self, algebra: &A, n: usize) -> A::Element {
-        let (Some(x), Some(w)) = (self.solution.get(n), self.frequency_squared.get(n)) else {
-            return algebra.zero();
-        };
-        let sum = algebra.force(x);
-        let Some(leading) = self.solution.first().filter(|_| n > 0) else { return sum };
-        let inertia = algebra.derivative(&algebra.derivative(leading));
-        algebra.add(&sum, &algebra.scale_by(&inertia, w))
-    }
-}
 
 /// What to derive: x'' + F(x, x'; eps) = 0 up to eps^order, with the amplitude that `condition` fixes.
 #[derive(Clone, Debug)]
@@ -252,20 +205,6 @@ pub(crate) struct Driver<'a, A: PhaseAlgebra> {
     pub(crate) by_first_harmonic: bool,
     /// Of the inertia and the velocity.
     ahead: [Ahead<A::Element>; 2],
-}
-
-/// A convolution of constants and functions.
-#[derive(Clone, Copy)]
-enum Combined {
-    /// W_k x_{n-k}''.
-    Inertia,
-    /// omega_k x_{n-k}'.
-    Velocity,
-}
-
-/// Whether c_k f_{order-k} is of orders that stay as they are; see [`Ahead::next`].
-fn is_settled(below: usize, order: usize, k: usize) -> bool {
-    k <= below && order - k < below
 }
 
 /// How order n reacts to a change of the amplitude of order n - 1.
@@ -469,70 +408,6 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         let pairs: Vec<_> = (1..n).map(|k| (&self.frequency[k], &self.frequency[n - k])).collect();
         let rest = constants.sub(&self.frequency_squared[n], &constants.sum_of_products(&pairs));
         self.frequency.push(constants.scale(&rest, &Rational::from((1, 2))));
-    }
-
-    /// [x']_n = sum_k omega_k dx_{n-k}/dpsi.
-    fn velocity(&mut self, n: usize) -> A::Element {
-        self.look_ahead(Combined::Velocity, n);
-        let leading = [(&self.slopes[n], &self.frequency[0])];
-        let rest = self.combined(Combined::Velocity, n);
-        let terms: Vec<_> = leading.into_iter().chain(rest).collect();
-        self.algebra.linear_combination(&terms)
-    }
-
-    /// The terms of a convolution, k = 1..n, those that were summed ahead as one.
-    fn combined(&self, which: Combined, n: usize) -> Vec<(&A::Element, &Constant<A>)> {
-        let ahead = &self.ahead[which as usize];
-        let below = ahead.below(n);
-        let mut terms = self.terms_of(which, n, |k| !is_settled(below, n, k));
-        let sum = ahead.sum(n);
-        // W_0 = 1.
-        terms.extend(sum.map(|sum| (sum, &self.frequency_squared[0])));
-        terms
-    }
-
-    /// Sums a convolution for order n and some after it, where many sums at once cost less than one by one.
-    fn look_ahead(&mut self, which: Combined, n: usize) {
-        let last = self.evaluator.last.filter(|_| A::SUMS_AT_ONCE);
-        let Some(next) = last.and_then(|last| self.ahead[which as usize].next(n, last)) else {
-            return;
-        };
-        let [coefficients, orders] = next.clone();
-        let list = |order| {
-            self.terms_of(which, order, |k| {
-                is_settled(coefficients.end, order, k) && !is_settled(coefficients.start, order, k)
-            })
-        };
-        let lists: Vec<_> = orders.map(list).collect();
-        let (algebra, sums) = (self.algebra, self.algebra.linear_combinations(&lists));
-        self.ahead[which as usize].take(next, sums, |sum, rest| algebra.add_assign(sum, rest));
-    }
-
-    fn terms_of(
-        &self,
-        which: Combined,
-        n: usize,
-        wanted: impl Fn(usize) -> bool,
-    ) -> Vec<(&A::Element, &Constant<A>)> {
-        let (constants, f) = match which {
-            Combined::Inertia => (&self.frequency_squared, &self.second_derivatives),
-            Combined::Velocity => (&self.frequency, &self.slopes),
-        };
-        self.convolution(&constants[1..], f, n, wanted)
-    }
-
-    /// The terms c_k f_{n-k}, k = 1..n, that are wanted and do not vanish; c_1 is the first of the list.
-    pub(crate) fn convolution<'b>(
-        &self,
-        constants: &'b [Constant<A>],
-        f: &'b [A::Element],
-        n: usize,
-        wanted: impl Fn(usize) -> bool,
-    ) -> Vec<(&'b A::Element, &'b Constant<A>)> {
-        let nonzero =
-            |(k, c): &(usize, &Constant<A>)| wanted(*k) && !self.algebra.constants().is_zero(c);
-        let terms = (1..=n).zip(constants).filter(nonzero);
-        terms.filter_map(|(k, c)| Some((f.get(n - k)?, c))).collect()
     }
 
     /// f_n changes by -[dF]_1/kappa + W_1 cos psi when x_{n-1} changes by cos psi, because F is

@@ -1,6 +1,7 @@
 //! The driver and its judge within the algebra: expansions to any order, written once over
 //! [`lindstedt_algebra::PhaseAlgebra`], and the residual check that shares no code with it.
 
+mod ahead;
 mod bound;
 mod clock;
 mod compile;
@@ -8,6 +9,7 @@ mod driver;
 mod error;
 mod evaluator;
 mod excitation;
+mod expansion;
 mod limit_cycle;
 mod period;
 mod residual;
@@ -21,11 +23,10 @@ pub use clock::{
     ClockExpansion, ClockFrequency, ClockMean, check_clock, clock_variable, expand_clock,
 };
 pub use compile::{Binding, Equation, compile, compile_system};
-pub use driver::{
-    Expansion, Known, OrderWork, Request, amplitude_reaction, expand, extend, leading_amplitude,
-};
+pub use driver::{Known, Request, amplitude_reaction, expand, extend, leading_amplitude};
 pub use error::ExpandError;
 pub use excitation::Excitation;
+pub use expansion::{Expansion, OrderWork};
 pub use period::{Period, conservative_period};
 pub use residual::{check, check_from, check_normalisation};
 pub use residual_bound::{Expected, FrequencyBound, OrderNumbers, ResidualBound};

@@ -13,7 +13,7 @@
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node, NodeId};
-use crate::driver::Expansion;
+use crate::expansion::Expansion;
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::Condition;
 use lindstedt_series::Series;

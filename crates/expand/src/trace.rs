@@ -10,7 +10,8 @@
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
-use crate::driver::{Driver, OrderWork, Request, run};
+use crate::driver::{Driver, Request, run};
+use crate::expansion::OrderWork;
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, Ring};
 use lindstedt_equation::Condition;
 

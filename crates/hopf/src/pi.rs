@@ -3,8 +3,9 @@
 
 use crate::equation::{Field, PI};
 use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_coeff::constant;
 use lindstedt_coeff::print::{Print, Style, Term, power, print_sum};
-use lindstedt_equation::{Expression, Function, Operations};
+use lindstedt_equation::Expression;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Number, certified, rational};
 use lindstedt_series::univariate::{common_divisor, divided, plus, product, scaled};
@@ -142,7 +143,12 @@ impl Field for PiField {
     }
 
     fn constant(&self, e: &Expression) -> Option<InPi> {
-        e.evaluate(&mut { *self })
+        let high = |e: &Expression| match e {
+            Expression::Power(_, n) => n.as_number().is_none_or(|n| n.abs() > LARGEST_POWER),
+            _ => false,
+        };
+        let pi = |name: &str| (name == PI).then(|| self.power(&1.into(), 1));
+        if e.nodes().any(high) { None } else { constant(self, e, &pi) }
     }
 
     fn number(&self, a: &InPi, digits: usize) -> Option<Number> {
@@ -162,39 +168,6 @@ impl Field for PiField {
             (!ball.contains_zero()).then_some(sign)
         };
         (7..=16).find_map(|k| decided(1 << k))
-    }
-}
-
-impl Operations for PiField {
-    type Value = InPi;
-
-    fn number(&mut self, q: &Rational) -> Option<InPi> {
-        Some(self.rational(q))
-    }
-
-    fn leaf(&mut self, leaf: &Expression) -> Option<InPi> {
-        let pi = matches!(leaf, Expression::Parameter(name) if name == PI);
-        pi.then(|| (*self).power(&1.into(), 1))
-    }
-
-    fn add(&mut self, a: InPi, b: InPi) -> Option<InPi> {
-        Some(Ring::add(self, &a, &b))
-    }
-
-    fn multiply(&mut self, a: InPi, b: InPi) -> Option<InPi> {
-        Some(self.mul(&a, &b))
-    }
-
-    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<InPi> {
-        let n = exponent.as_number().filter(Rational::is_integer)?.numer().to_i32()?;
-        let base = base.evaluate(self)?;
-        let base = if n < 0 { self.reciprocal(&base)? } else { base };
-        let count = Some(n.unsigned_abs()).filter(|n| *n <= LARGEST_POWER)?;
-        Some(lindstedt_coeff::polynomial::power(self, &base, count))
-    }
-
-    fn function(&mut self, _: Function, _: &Expression) -> Option<InPi> {
-        None
     }
 }
 

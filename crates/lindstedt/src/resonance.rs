@@ -4,10 +4,11 @@ use crate::averaging::Averaging;
 use crate::{Answer, DerivationError, Error, Oscillator, SlowFlow, Work};
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::check_parameters;
-use lindstedt_derivation::resonance::{self, NormalMode, ResonanceError, Sought, SoughtBranch};
+use lindstedt_derivation::resonance::{
+    self, Detuned, NormalMode, ResonanceError, Sought, SoughtBranch,
+};
 use lindstedt_equation::Expression;
 use lindstedt_expand::Excitation;
-use rug::Rational;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -138,13 +139,13 @@ impl Oscillator {
 
     /// The slow flow for those who do not print it: its symbols may have any names.
     pub(crate) fn flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
-        self.flow_from(None, order, work)
+        self.flow_detuned(Detuned::Beside, order, work)
     }
 
-    /// The same with the force detuned from a rate where one is given.
-    pub(crate) fn flow_from(
+    /// The same with the force detuned as it is asked for.
+    pub(crate) fn flow_detuned(
         &self,
-        rate: Option<&Rational>,
+        detuned: Detuned<'_>,
         order: usize,
         work: &Work,
     ) -> Result<Answer<SlowFlow>, Error> {
@@ -153,10 +154,7 @@ impl Oscillator {
         self.values_without_pi()?;
         let settings = self.averaging(order, work);
         let (problem, mut goes_on) = (self.problem(), |progress| work.goes_on(progress));
-        let found = match rate {
-            None => resonance::slow_flow(problem, &settings, &mut goes_on),
-            Some(rate) => resonance::slow_flow_from(problem, &settings, rate, &mut goes_on),
-        };
+        let found = resonance::slow_flow(problem, &settings, detuned, &mut goes_on);
         let value = found.map_err(|error| self.refusal(error.into()))?;
         let orders = (order, value.order, value.checked_orders.is_some());
         let tier = if value.enclosed.is_some() { "certified" } else { "exact" };

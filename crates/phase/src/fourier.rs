@@ -30,7 +30,8 @@
 //! The functions are even: no sines. t -> t + pi multiplies them by (-1)^p: only harmonics with
 //! m - p even occur. Lambda_m is odd and has the period pi: sines of even harmonics only.
 
-use crate::lobachevsky::Moments;
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use rug::{Integer, Rational};
 
 /// The cosine coefficients c_0, ..., c_max of
@@ -51,51 +52,45 @@ use rug::{Integer, Rational};
 /// assert_eq!(ring.print(&c[1], Style::Text), "1 - 2*mu_1");
 /// assert_eq!(ring.print(&c[3], Style::Text), "1/2");
 /// ```
-pub fn power_log_harmonics<C: Moments>(constants: &C, p: u32, q: u16, max: u32) -> Vec<C::Element> {
+pub fn power_log_harmonics(ring: &PolynomialRing, p: u32, q: u16, max: u32) -> Vec<Polynomial> {
     let factorial = Integer::from(Integer::factorial(q.into()));
     let sign = if q.is_multiple_of(2) { 1 } else { -1 };
     let scale = Rational::from((factorial << u32::from(q)) * sign);
-    harmonics(constants, p, q, max, &scale)
+    harmonics(ring, p, q, max, &scale)
 }
 
 /// The sine coefficients s_0 = 0, s_1, ..., s_max of Lambda_m(t) = sum_k s_k sin(k t), exactly,
 /// where Lambda_m(t) = int_0^t (l(s)^m/m! - mu_m) ds: those of the cosine series of l^m/m! divided
 /// by k. Entries with k odd are zero. Costs as [`power_log_harmonics`].
-pub fn lambda_harmonics<C: Moments>(constants: &C, m: u16, max: u32) -> Vec<C::Element> {
-    let mut list = harmonics(constants, 0, m, max, &Rational::from(1));
+pub fn lambda_harmonics(ring: &PolynomialRing, m: u16, max: u32) -> Vec<Polynomial> {
+    let mut list = harmonics(ring, 0, m, max, &Rational::from(1));
     for (s, k) in list.iter_mut().zip(0u32..) {
         *s = match k {
-            0 => constants.zero(),
-            _ => constants.scale(s, &Rational::from((1, k))),
+            0 => ring.zero(),
+            _ => ring.scale(s, &Rational::from((1, k))),
         };
     }
     list
 }
 
 /// scale * [z^q] of the cosine coefficients of cos^p t |cos t|^{-z}.
-fn harmonics<C: Moments>(
-    constants: &C,
-    p: u32,
-    q: u16,
-    max: u32,
-    scale: &Rational,
-) -> Vec<C::Element> {
+fn harmonics(ring: &PolynomialRing, p: u32, q: u16, max: u32, scale: &Rational) -> Vec<Polynomial> {
     let mut list = Vec::new();
     let mut quotient = Quotient::new(p, q);
     for m in 0..=max {
         if m % 2 != p % 2 {
-            list.push(constants.zero());
+            list.push(ring.zero());
             continue;
         }
         let doubled = if m == 0 { scale.clone() } else { Rational::from(scale * 2) };
-        let mut sum = constants.zero();
+        let mut sum = ring.zero();
         for (j, r) in (0..=q).zip(quotient.series.iter().rev()) {
             let r = Rational::from(r * &doubled);
             let term = match j {
-                0 => constants.rational(&r),
-                _ => constants.scale(&constants.moment(j), &r),
+                0 => ring.rational(&r),
+                _ => ring.scale(&ring.symbol(Symbol::Moment(j)), &r),
             };
-            constants.add_assign(&mut sum, &term);
+            ring.add_assign(&mut sum, &term);
         }
         list.push(sum);
         quotient.next_harmonic();
@@ -168,9 +163,8 @@ impl Quotient {
 mod tests {
     use super::*;
     use crate::Lobachevsky;
-    use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Rationals, Ring};
+    use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, Rationals};
     use lindstedt_coeff::polynomial::power;
-    use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 
     fn constant(n: i64, d: i64) -> Polynomial {
         PolynomialRing::default().rational(&Rational::from((n, d)))

@@ -11,7 +11,7 @@
 //! factors stand behind the others (`\ell\cos\tau`), where nothing can be read as their argument.
 
 use crate::Lobachevsky;
-use crate::lobachevsky::{Factor, LobachevskyElement, Moments, Word};
+use crate::lobachevsky::{Factor, LobachevskyElement, Word};
 use crate::trigonometric::{Trigonometric, TrigonometricPolynomial, harmonics};
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra};
 use lindstedt_coeff::print::{Print, Style, Term, latex_name, parenthesize, power, print_sum};
@@ -74,7 +74,7 @@ pub fn times_harmonic(term: Term, function: &str, k: usize, phase: &str, style: 
     if k == 0 { term } else { term.times([function_value(function, 1, k, phase, style)]) }
 }
 
-impl<C: Moments + Print> PrintPhase for Lobachevsky<C> {
+impl<C: RationalAlgebra + Print> PrintPhase for Lobachevsky<C> {
     fn print_terms(
         &self,
         f: &LobachevskyElement<C::Element>,

@@ -26,7 +26,6 @@ use lindstedt_number::{Exact, Number};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use task::Task;
-pub(crate) use values::constant;
 
 /// What to average.
 #[derive(Clone, Debug)]

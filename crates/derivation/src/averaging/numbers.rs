@@ -3,11 +3,11 @@
 use super::AveragingSettings;
 use super::cycles::{Cycles, cycles};
 use super::task::{Over, Task};
-use super::values::constant;
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
+use lindstedt_coeff::constant;
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_number::ball::Balls;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};

@@ -3,7 +3,7 @@
 use super::coefficients::{Coefficients, with_angles};
 use super::cycles::{cycles, single_cycle};
 use super::formulas::Formulas;
-use super::values::{Given, constant, enclosed};
+use super::values::{Given, enclosed};
 use super::{
     AveragedExpansion, Averaging, AveragingSettings, Coefficient, Formula, RateTerm, SingleCycle,
 };
@@ -13,10 +13,10 @@ use crate::resonance::ResonanceError;
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals};
-use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::Print;
+use lindstedt_coeff::{PolynomialRing, constant};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::resonance::{check_flow, linear_part, resonant};
 use lindstedt_expand::{Binding, Equation, Excitation, ExpandError, compile_system};

@@ -14,7 +14,7 @@ use crate::settings::Settings;
 use crate::work::Progress;
 use frequency::Clockwork;
 use functions::Lift;
-use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{RationalAlgebra, Rationals};
 use lindstedt_coeff::packed::{PackedPolynomial, PackedSums};
 use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_equation::{Condition, Expression, Problem};
@@ -23,24 +23,12 @@ use lindstedt_expand::{
     clock_variable, compile, expand_clock,
 };
 use lindstedt_phase::Lobachevsky;
-use lindstedt_phase::lobachevsky::{Formal, Unfolding};
+use lindstedt_phase::lobachevsky::Unfolding;
 use point::Point;
 use rug::Rational;
 use std::sync::Arc;
 
 pub use functions::ClockSolution;
-
-/// The values of names, as constants without moments.
-struct Unmeasured<'a, C: Ring>(&'a dyn Binding<C>);
-
-impl<C: Ring> Binding<Formal<C>> for Unmeasured<'_, C> {
-    fn parameter(&self, name: &str) -> Option<C::Element> {
-        self.0.parameter(name)
-    }
-    fn formal(&self, name: &str, n: usize) -> Option<C::Element> {
-        self.0.formal(name, n)
-    }
-}
 
 /// The values of names, with the sums S_n packed.
 struct Packing<'a>(&'a PackedSums, &'a Given<'a>);
@@ -90,11 +78,11 @@ fn over<C: RationalAlgebra + Clone + Send + Sync + 'static>(
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Option<Found>, Error> {
     let stop = &settings.stop;
-    let algebra = Lobachevsky::new(Formal(constants.clone())).with_stop(stop.clone());
+    let algebra = Lobachevsky::formal(constants.clone()).with_stop(stop.clone());
     let leading_amplitude = Rational::from(1);
     let request = Request { condition, order: settings.order, leading_amplitude };
     let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
-    let compiled = compile(&algebra, &problem.equation, &Unmeasured(binding), settings.order);
+    let compiled = compile(&algebra, &problem.equation, binding, settings.order);
     let found = compiled.and_then(|equation| {
         let found = expand_clock(&algebra, &equation, &request, &mut on_order)?;
         Ok((equation, found))

@@ -9,8 +9,8 @@
 
 use super::forces::{Angles as Named, named, quarters, wave_names};
 use super::{System, Terms, Unit, collected};
-use crate::averaging::constant;
 use lindstedt_algebra::{Ring, common_measure};
+use lindstedt_coeff::constant;
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::{Monomials, expand};
 use lindstedt_expand::{Excitation, ExpandError};

@@ -6,10 +6,11 @@ use super::system::refuse_delays;
 use super::{
     Names, ResonanceError, Room, SlowFlow, System, Terms, refuse_near_miss, sum_of_harmonics,
 };
-use crate::averaging::{AveragingSettings, constant};
+use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_algebra::{AmplitudeAlgebra, PhaseError};
+use lindstedt_coeff::constant;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_expand::resonance::{checked_residual, energy, resonant};

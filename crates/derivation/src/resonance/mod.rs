@@ -26,8 +26,10 @@ mod motion;
 mod normal_mode;
 mod parametric;
 mod polar;
+mod prepared;
 mod print;
 mod quotients;
+mod separated;
 mod sought;
 mod system;
 mod unit;
@@ -41,7 +43,7 @@ pub use normal_mode::{NormalMode, normal_mode};
 pub use polar::{Polar, PolarTerm};
 pub use print::{print_name, print_turns};
 pub use sought::{Sought, SoughtBranch, sought};
-pub use system::{Beside, System};
+pub use system::{Beside, Detuned, System};
 pub use unit::Unit;
 
 use crate::averaging::AveragingSettings;
@@ -59,7 +61,7 @@ use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm};
 use rug::Rational;
 use std::collections::BTreeMap;
-use system::{Detuned, refuse_delays};
+use system::refuse_delays;
 
 type Element = AmplitudeElement<Whole>;
 
@@ -71,11 +73,12 @@ pub type Terms = Vec<AmplitudeTerm>;
 /// A slow flow that was substituted into its equations, as plain data.
 ///
 /// ```
-/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow};
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::{Detuned, slow_flow}};
 /// use lindstedt_problem_file::ProblemFile;
 /// let text = "equation = \"x'' + x + eps*h*x*cos(2*t) = 0\"";
 /// let problem = ProblemFile::parse(text)?.problem;
-/// let found = slow_flow(&problem, &AveragingSettings::default(), &mut |_| true)?;
+/// let settings = AveragingSettings::default();
+/// let found = slow_flow(&problem, &settings, Detuned::Beside, &mut |_| true)?;
 /// // f_1 = (i/4) h zbar E: exponents of z, zbar, E, h.
 /// let [term] = &found.flow[0][1][..] else { panic!("one term") };
 /// assert_eq!((&term.exponents[..], term.im.to_string().as_str()), (&[0, 1, 1, 1][..], "1/4"));
@@ -234,73 +237,23 @@ pub fn is_beside(problem: &Problem, given: &BTreeMap<String, Exact>) -> bool {
 /// [`ResonanceError`] by name for what is no such system; [`ExpandError`](lindstedt_expand::ExpandError) for terms that are no polynomial.
 ///
 /// ```
-/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow};
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::{Detuned, slow_flow}};
 /// use lindstedt_problem_file::ProblemFile;
 /// let text = "equation = \"x'' + x + eps*x^3 = eps*F*cos((1 + eps*sigma)*t)\"";
 /// let problem = ProblemFile::parse(text)?.problem;
-/// let found = slow_flow(&problem, &AveragingSettings::default(), &mut |_| true)?;
+/// let settings = AveragingSettings::default();
+/// let found = slow_flow(&problem, &settings, Detuned::Beside, &mut |_| true)?;
 /// assert_eq!((found.checked_orders, found.flow[0][1].len()), (Some(2), 2));
+/// // A force beside a resonance, as it is and detuned from that.
+/// let text = "equation = \"x'' + x + eps*x^3 = eps*cos(6/5*t)\"";
+/// let problem = ProblemFile::parse(text)?.problem;
+/// let found = slow_flow(&problem, &settings, Detuned::Not, &mut |_| true)?;
+/// assert!(found.system.beside.is_none() && found.system.force() == rug::Rational::from((6, 5)));
+/// let found = slow_flow(&problem, &settings, Detuned::From(&1.into()), &mut |_| true)?;
+/// assert_eq!((found.system.force(), &found.system.resonances_around()[0]), (1.into(), &1.into()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn slow_flow(
-    problem: &Problem,
-    settings: &AveragingSettings,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<SlowFlow, Error> {
-    of_problem(problem, settings, Detuned::Beside, observer)
-}
-
-/// As [`slow_flow`], with a force beside a resonance at the frequency that it has, however small the small parameter
-/// becomes: sigma = (omega - Omega)/eps grows without bound then, and no order of the detuned flow is small beside the one
-/// before.
-///
-/// # Errors
-/// As there.
-///
-/// ```
-/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow_undetuned};
-/// use lindstedt_problem_file::ProblemFile;
-/// let text = "equation = \"x'' + x + eps*x^3 = eps*cos(24/25*t)\"";
-/// let problem = ProblemFile::parse(text)?.problem;
-/// let found = slow_flow_undetuned(&problem, &AveragingSettings::default(), &mut |_| true)?;
-/// assert!(found.system.beside.is_none() && found.system.force() == rug::Rational::from((24, 25)));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn slow_flow_undetuned(
-    problem: &Problem,
-    settings: &AveragingSettings,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<SlowFlow, Error> {
-    of_problem(problem, settings, Detuned::Not, observer)
-}
-
-/// As [`slow_flow`], with the only force detuned from this rate, in multiples of the unit: one of
-/// [`System::resonances_around`].
-///
-/// # Errors
-/// As there.
-///
-/// ```
-/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow_from};
-/// use lindstedt_problem_file::ProblemFile;
-/// let text = "equation = \"x'' + x + eps*x^3 = eps*cos(6/5*t)\"";
-/// let problem = ProblemFile::parse(text)?.problem;
-/// let settings = AveragingSettings::default();
-/// let found = slow_flow_from(&problem, &settings, &1.into(), &mut |_| true)?;
-/// assert_eq!(found.system.force(), 1);
-/// assert_eq!(found.system.resonances_around()[0], 1);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn slow_flow_from(
-    problem: &Problem,
-    settings: &AveragingSettings,
-    rate: &Rational,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<SlowFlow, Error> {
-    of_problem(problem, settings, Detuned::From(rate), observer)
-}
-
-fn of_problem(
     problem: &Problem,
     settings: &AveragingSettings,
     detuned: Detuned<'_>,

@@ -5,7 +5,7 @@
 
 use super::forces::with_phases;
 use super::{AlgebraicModes, Phase, SlowFlow, Terms};
-use crate::averaging::constant;
+use lindstedt_coeff::constant;
 use lindstedt_equation::{Expression, Function, Unknown};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};

@@ -14,12 +14,14 @@
 
 use super::flow::Symbols;
 use super::modes::{Matrix, spectrum};
+use super::prepared::Prepared;
 use super::print::print_powers;
-use super::system::{Prepared, refuse_delays, separated, symbols};
+use super::separated::separated;
+use super::system::{Detuned, refuse_delays, symbols};
 use super::unit::Unit;
 use super::{
     Element, Enclosed, Names, ResonanceError, SlowFlow, Terms, collected, refuse_near_miss,
-    slow_flow_undetuned,
+    slow_flow,
 };
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
@@ -109,7 +111,7 @@ pub fn normal_mode(
     };
     let modes = spectrum(&prepared.mass, &prepared.stiffness);
     if unit.is_none() && matches!(modes, Err(ResonanceError::NoRationalForm)) {
-        let flow = slow_flow_undetuned(problem, settings, observer)?;
+        let flow = slow_flow(problem, settings, Detuned::Not, observer)?;
         return enclosed_mode(flow, mode);
     }
     let modes = modes.map_err(|error| match (error, &unit) {

@@ -1,17 +1,15 @@
 //! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
 
-use super::algebraic::{AlgebraicModes, Entry};
-use super::conserved::{axes, conserved_energy};
-use super::forces::{
-    Angles, InPhases, Phase, around, combination, harmonic, is_internal, is_wave, leading_rates,
-    near, phases, sum,
-};
-use super::modes::{Matrix, Spectrum, inverted, spectrum};
+use super::algebraic::AlgebraicModes;
+use super::conserved::axes;
+use super::forces::{Phase, around, combination, harmonic, is_internal, is_wave, near, sum};
+use super::modes::{Matrix, inverted, spectrum};
+use super::prepared::Prepared;
+use super::separated::{energy, separated};
 use super::unit::Unit;
 use super::{Names, ResonanceError};
 use crate::error::DerivationError as Error;
-use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
-use lindstedt_equation::{Expression, Function, Unknown};
+use lindstedt_equation::{Expression, Function};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
@@ -50,11 +48,15 @@ pub struct System {
     pub beside: Option<Beside>,
 }
 
-/// From which rate a force is detuned: one that it lies beside, none, or this one.
-#[derive(Clone, Copy)]
-pub(super) enum Detuned<'a> {
+/// From which rate the only force is detuned.
+#[derive(Clone, Copy, Debug)]
+pub enum Detuned<'a> {
+    /// From that of a resonance that it lies beside, if there is one.
     Beside,
+    /// From none, however small the small parameter becomes: sigma = (omega - Omega)/eps grows without bound then, and no
+    /// order of the detuned flow is small beside the one before.
     Not,
+    /// From this one, in multiples of the unit: one of [`System::resonances_around`].
     From(&'a Rational),
 }
 
@@ -65,179 +67,6 @@ pub struct Beside {
     pub rate: Rational,
     /// The symbol (rate - Omega)/eps.
     pub symbol: String,
-}
-
-/// The name of an unknown while its equation is multiplied out as one of a parameter: none is written so.
-fn stand_in(unknown: &Unknown) -> Expression {
-    Expression::parameter(&format!("{}'{}", unknown.index, unknown.derivative))
-}
-
-const WAVE: &str = "'t";
-const LATE: &str = "'late";
-
-/// The equation at eps = 0, multiplied out, unknowns and forces as parameters.
-fn at_zero(equation: &Expression) -> Result<Monomials, ResonanceError> {
-    let change = |e: &Expression| match e {
-        Expression::Small => Some(Expression::integer(0)),
-        Expression::Unknown(Unknown { delay: Some(_), .. }) => Some(Expression::parameter(LATE)),
-        Expression::Unknown(unknown) => Some(stand_in(unknown)),
-        wave if is_wave(wave) => Some(Expression::parameter(WAVE)),
-        _ => None,
-    };
-    let all = expand(&equation.map(&change).canonical());
-    all.ok_or(ResonanceError::TooManyTerms { limit: MOST_TERMS })
-}
-
-/// A factor of a term: an unknown (index and derivative), or a force.
-fn unknowns_of(m: &Monomial) -> impl Iterator<Item = ([usize; 2], i32)> {
-    m.parameters.iter().filter_map(|(name, n)| {
-        let (index, derivative) = name.split_once('\'')?;
-        Some(([index.parse().ok()?, derivative.parse().ok()?], *n))
-    })
-}
-
-/// The coefficients of x_k and x_k'' in an equation at order zero, by index.
-struct Linear {
-    mass: BTreeMap<usize, Expression>,
-    stiffness: BTreeMap<usize, Expression>,
-}
-
-fn linear(equation: &Expression, names: Names<'_>) -> Result<Linear, ResonanceError> {
-    let all = at_zero(equation)?;
-    let mut linear = Linear { mass: BTreeMap::new(), stiffness: BTreeMap::new() };
-    for (m, q) in &all.terms {
-        let refused =
-            || ResonanceError::NotWeaklyNonlinear { term: names.shown(&written(&all.tree(m, q))) };
-        let mut found = unknowns_of(m);
-        let (first, second) = (found.next(), found.next());
-        let force = m.parameters.contains_key(WAVE);
-        if !m.atoms.is_empty() || m.parameters.contains_key(LATE) {
-            return Err(refused());
-        }
-        let list = match (first, second) {
-            (None, None) => continue,
-            (Some(([_, 0], 1)), None) if !force => &mut linear.stiffness,
-            (Some(([_, 2], 1)), None) if !force => &mut linear.mass,
-            _ => return Err(refused()),
-        };
-        let Some(([index, _], _)) = first else { continue };
-        let mut rest = m.clone();
-        rest.parameters.retain(|name, _| !name.contains('\''));
-        let sum = list.remove(&index).unwrap_or_else(|| 0.into());
-        list.insert(index, (sum + all.tree(&rest, q)).canonical());
-    }
-    Ok(linear)
-}
-
-/// A term with its unknowns again.
-fn written(e: &Expression) -> Expression {
-    e.map(&|e| {
-        let Expression::Parameter(name) = e else { return None };
-        match name.as_str() {
-            WAVE => return Some(Expression::parameter("cos(...*t)")),
-            LATE => return Some(Expression::parameter("x(t - ...)")),
-            _ => {}
-        }
-        let (index, derivative) = name.split_once('\'')?;
-        Some(Expression::unknown(index.parse().ok()?, derivative.parse().ok()?))
-    })
-}
-
-fn rational(name: &str, value: &Exact) -> Result<Rational, Error> {
-    let irrational = || Error::Irrational { name: name.to_owned(), value: value.to_string() };
-    value.as_rational().cloned().ok_or_else(irrational)
-}
-
-/// Equations with the values put in and the phases of the forces taken out, and their linear part.
-pub(super) struct Prepared {
-    pub equations: Vec<Expression>,
-    pub forces: Vec<Phase>,
-    pub independent: Vec<String>,
-    pub unit: Option<Unit>,
-    pub angles: Angles,
-    pub mass: Matrix,
-    pub stiffness: Matrix,
-    pub bound: BTreeMap<String, Rational>,
-}
-
-impl Prepared {
-    /// Prepares the left sides of equations with the values given, and those of the cards where a frequency
-    /// depends on them.
-    pub(super) fn of(
-        equations: &[Expression],
-        given: &BTreeMap<String, Exact>,
-        cards: &dyn Fn(&str) -> Option<Exact>,
-        names: Names<'_>,
-    ) -> Result<Self, Error> {
-        for e in equations.iter().flat_map(Expression::nodes) {
-            match e {
-                Expression::Unknown(unknown) if unknown.index >= equations.len() => {
-                    let count = unknown.index + 1;
-                    let equations = equations.len();
-                    return Err(ResonanceError::Equations { unknowns: count, equations }.into());
-                }
-                _ => {}
-            }
-        }
-        let mut bound = BTreeMap::new();
-        let mentioned: BTreeSet<String> =
-            equations.iter().flat_map(Expression::parameters).collect();
-        // A delay may be a multiple of pi.
-        let turns = |name: &String| match given.get(name) {
-            Some(Exact::PiTimes(q)) if is_only_late(equations, name) => Some(q.clone()),
-            _ => None,
-        };
-        let equations: Vec<_> = equations.iter().map(|e| with_turns(e, &turns)).collect();
-        let given = given.iter().filter(|(name, _)| turns(name).is_none());
-        for (name, value) in given.filter(|(name, _)| mentioned.contains(*name)) {
-            bound.insert(name.clone(), rational(name, value)?);
-        }
-        let equations: Vec<_> =
-            equations.iter().map(|e| e.with_values(&bound).canonical()).collect();
-        // What the frequencies depend on has its value, too.
-        let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
-        let entries = parts.iter().flat_map(|p| p.mass.values().chain(p.stiffness.values()));
-        let needed: BTreeSet<String> = entries.flat_map(Expression::parameters).collect();
-        let rates = leading_rates(&equations, names)?;
-        let rates: BTreeSet<String> = rates.iter().flat_map(Expression::parameters).collect();
-        let mut independent = Vec::new();
-        for name in needed.union(&rates) {
-            match cards(name) {
-                Some(value) => drop(bound.insert(name.clone(), rational(name, &value)?)),
-                None if needed.contains(name) => {}
-                None => independent.push(name.clone()),
-            }
-        }
-        let equations: Vec<_> =
-            equations.iter().map(|e| e.with_values(&bound).canonical()).collect();
-        let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
-        let entries = parts.iter().flat_map(|p| p.stiffness.values());
-        let unit = Unit::symbol(parts.iter().flat_map(|p| p.mass.values()), entries)?;
-        let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>, unit: Option<&Unit>| {
-            let number = |e: &Expression| unit.map_or(e.as_number(), |unit| unit.multiples(e));
-            let entry = |p: &Linear, j| match of(p).get(&j) {
-                None => Ok(Rational::new()),
-                Some(e) => number(e).ok_or_else(|| ResonanceError::IrrationalFactor {
-                    factor: names.shown(e),
-                    unknown: names.0.unknown(j),
-                }),
-            };
-            let row = |p| (0..parts.len()).map(|j| entry(p, j)).collect();
-            parts.iter().map(row).collect::<Result<Matrix, _>>()
-        };
-        let (mass, stiffness) =
-            (matrix(&|p| &p.mass, None)?, matrix(&|p| &p.stiffness, unit.as_ref())?);
-        let root = || {
-            let squares = spectrum(&mass, &stiffness).ok()?.squares;
-            Unit::root(&squares, &leading_rates(&equations, names).ok()?)
-        };
-        let unit = unit.or_else(|| root().filter(|_| independent.is_empty()));
-        let named = |e: &Expression| unit.as_ref().map_or_else(|| e.clone(), |unit| unit.named(e));
-        let equations: Vec<_> = equations.iter().map(named).collect();
-        let InPhases { phases: forces, equations, angles } =
-            phases(&equations, (unit.as_ref(), &independent), names)?;
-        Ok(Self { equations, forces, independent, unit, angles, mass, stiffness, bound })
-    }
 }
 
 impl System {
@@ -449,24 +278,6 @@ pub(super) fn symbols<'a>(
     symbols
 }
 
-/// Whether a parameter occurs in delays alone.
-fn is_only_late(equations: &[Expression], name: &str) -> bool {
-    let now = |e: &Expression| match e {
-        Expression::Unknown(x) if x.delay.is_some() => Some(Expression::unknown(x.index, 0)),
-        _ => None,
-    };
-    let occurs = |e: &Expression| e.parameters().iter().any(|known| known == name);
-    equations.iter().any(occurs) && !equations.iter().any(|e| occurs(&e.map(&now)))
-}
-
-/// q pi in the place of every parameter for which there is a q.
-fn with_turns(e: &Expression, q: &dyn Fn(&String) -> Option<Rational>) -> Expression {
-    e.substitute(&|e| {
-        let Expression::Parameter(name) = e else { return None };
-        Some(Expression::Number(q(name)?) * Expression::parameter("pi"))
-    })
-}
-
 /// Refuses a delay where one is not taken.
 pub(super) fn refuse_delays(
     equations: &[Expression],
@@ -477,101 +288,4 @@ pub(super) fn refuse_delays(
         None => Ok(()),
         Some(e) => Err(ResonanceError::Delay { term: names.shown(e) }),
     }
-}
-
-/// q_j'' + the rest of equation j, with x = P q in it; irrational numbers by their names.
-pub(super) fn separated(
-    equations: &[Expression],
-    modes: &Spectrum,
-    algebraic: Option<&AlgebraicModes>,
-    names: Names<'_>,
-) -> Result<Vec<Expression>, ResonanceError> {
-    let without: Vec<Expression> =
-        equations.iter().map(|e| without_acceleration(e, names)).collect::<Result<_, _>>()?;
-    let without = match algebraic {
-        None => without,
-        Some(known) => without.iter().zip(&known.stiffness).map(without_stiffness).collect(),
-    };
-    let named = algebraic.is_some();
-    let without: Vec<Expression> = without.iter().map(|e| in_modes(e, modes, named)).collect();
-    let equation = |(j, row): (usize, &Vec<Rational>)| {
-        let parts = row.iter().enumerate().zip(&without).filter(|((_, q), _)| !q.is_zero());
-        let terms = parts
-            .map(|((i, q), e)| (factor(q, Entry::Inverse(j, i), named) * e.clone()).canonical());
-        let terms = terms.flat_map(|e| e.terms().to_vec());
-        let square = algebraic.map(|_| Entry::Square(j).name());
-        let square = square.map(|name| Expression::parameter(&name) * Expression::unknown(j, 0));
-        let first = [Expression::unknown(j, 2)].into_iter().chain(square);
-        Expression::Sum(first.chain(terms).collect())
-    };
-    Ok(modes.inverse.iter().enumerate().map(equation).collect())
-}
-
-/// A number; irrational ones have names, in the place of which their enclosures are put.
-fn factor(q: &Rational, entry: Entry, named: bool) -> Expression {
-    if named { Expression::parameter(&entry.name()) } else { Expression::Number(q.clone()) }
-}
-
-/// With P q in the place of x.
-fn in_modes(e: &Expression, modes: &Spectrum, named: bool) -> Expression {
-    let shape = |e: &Expression| {
-        let (Some(shapes), Expression::Unknown(unknown)) = (&modes.shapes, e) else { return None };
-        let mode = |index| Expression::Unknown(Unknown { index, ..unknown.clone() });
-        let part =
-            |(j, p): (usize, &Rational)| factor(p, Entry::Shape(unknown.index, j), named) * mode(j);
-        Some(Expression::Sum(shapes[unknown.index].iter().enumerate().map(part).collect()))
-    };
-    e.map(&shape)
-}
-
-/// The energy that the equations solved for the x_j'' conserve, in irrational modes: names of their numbers would hide that these
-/// depend on each other.
-fn energy(
-    equations: &[Expression],
-    modes: &Spectrum,
-    known: &AlgebraicModes,
-    names: Names<'_>,
-) -> Result<Option<Expression>, ResonanceError> {
-    let inverse = known.mass_inverse.clone();
-    let own = Spectrum { squares: Vec::new(), shapes: None, inverse };
-    let own = separated(equations, &own, None, names)?;
-    Ok(conserved_energy(&own).map(|energy| in_modes(&energy, modes, true)))
-}
-
-/// The equation without sum_j k_j x_j at order zero.
-fn without_stiffness((equation, row): (&Expression, &Vec<Rational>)) -> Expression {
-    let term = |(j, k): (usize, &Rational)| {
-        Expression::Number(Rational::from(-k)) * Expression::unknown(j, 0)
-    };
-    let terms = row.iter().enumerate().map(term);
-    let all = Expression::Sum(std::iter::once(equation.clone()).chain(terms).collect());
-    all.multiplied_out().unwrap_or(all).canonical()
-}
-
-/// The equation without the x_k'', which stand in terms of their own with constant factors.
-fn without_acceleration(
-    equation: &Expression,
-    names: Names<'_>,
-) -> Result<Expression, ResonanceError> {
-    let accelerated =
-        |e: &Expression| matches!(e, Expression::Unknown(Unknown { derivative: 2.., .. }));
-    let alone = |term: &Expression| match term {
-        Expression::Product(factors) => {
-            let (with, others): (Vec<_>, Vec<_>) = factors.iter().partition(|f| accelerated(f));
-            with.len() == 1 && others.iter().all(|e| matches!(e, Expression::Number(_)))
-        }
-        single => accelerated(single),
-    };
-    let holds = |e: &Expression| e.nodes().any(accelerated);
-    let split = |e: &Expression| {
-        let (with, rest): (Vec<_>, Vec<_>) = e.terms().iter().cloned().partition(holds);
-        match with.iter().find(|term| !alone(term)) {
-            None => Ok(Expression::Sum(rest).canonical()),
-            Some(term) => Err(ResonanceError::Acceleration { term: names.shown(term) }),
-        }
-    };
-    split(&equation.canonical()).or_else(|error| {
-        let all = equation.multiplied_out().ok_or(error)?;
-        split(&all)
-    })
 }

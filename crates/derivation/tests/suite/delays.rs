@@ -1,7 +1,7 @@
 //! Slow flows with delays against the characteristic roots of linear equations.
 
 use lindstedt_derivation::averaging::AveragingSettings;
-use lindstedt_derivation::resonance::{SlowFlow, slow_flow};
+use lindstedt_derivation::resonance::{Detuned, SlowFlow, slow_flow};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
 use lindstedt_phase::amplitudes::AmplitudeTerm;
@@ -48,7 +48,7 @@ fn flow(equations: &[&str], order: usize, set: &[(&str, &str)]) -> SlowFlow {
     let value = |(name, text): &(&str, &str)| ((*name).to_owned(), Exact::parse(text).unwrap());
     let parameters = set.iter().map(value).collect();
     let settings = AveragingSettings { order, parameters, ..AveragingSettings::default() };
-    let found = slow_flow(&problem, &settings, &mut |_| true).unwrap();
+    let found = slow_flow(&problem, &settings, Detuned::Beside, &mut |_| true).unwrap();
     assert_eq!(found.checked_orders, Some(order));
     found
 }

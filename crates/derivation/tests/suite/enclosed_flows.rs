@@ -3,7 +3,7 @@
 use crate::resonance::{by_hand, flow, named};
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::averaging::AveragingSettings;
-use lindstedt_derivation::resonance::slow_flow;
+use lindstedt_derivation::resonance::{Detuned, slow_flow};
 use lindstedt_phase::amplitudes::AmplitudeTerm;
 use lindstedt_problem_file::ProblemFile;
 
@@ -79,7 +79,7 @@ fn digits_of_enclosures() {
     let text = "equations = [\"x'' + 2*x - y + eps*x^3/2\", \"y'' + 2*y - x\"]";
     let problem = ProblemFile::parse(text).unwrap().problem;
     let settings = AveragingSettings { order: 1, digits: 100, ..AveragingSettings::default() };
-    let found = slow_flow(&problem, &settings, &mut |_| true).unwrap();
+    let found = slow_flow(&problem, &settings, Detuned::Beside, &mut |_| true).unwrap();
     let root = "1.73205080756887729352744634150587236694280525381038\
                 0628055806979451933016908800037081146186757248576";
     assert_eq!(found.number(&found.system.frequencies[1]), root);

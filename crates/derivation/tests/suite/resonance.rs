@@ -3,7 +3,7 @@
 use lindstedt_coeff::print::Style;
 use lindstedt_derivation::DerivationError;
 use lindstedt_derivation::averaging::AveragingSettings;
-use lindstedt_derivation::resonance::{PolarTerm, ResonanceError, SlowFlow, slow_flow};
+use lindstedt_derivation::resonance::{Detuned, PolarTerm, ResonanceError, SlowFlow, slow_flow};
 use lindstedt_number::Exact;
 use lindstedt_phase::amplitudes::AmplitudeTerm;
 use lindstedt_problem_file::ProblemFile;
@@ -25,7 +25,7 @@ pub fn found(
     let value = |(name, text): &(&str, &str)| ((*name).to_owned(), Exact::parse(text).unwrap());
     let parameters = set.iter().map(value).collect();
     let settings = AveragingSettings { order, parameters, ..AveragingSettings::default() };
-    slow_flow(&problem, &settings, &mut |_| true)
+    slow_flow(&problem, &settings, Detuned::Beside, &mut |_| true)
 }
 
 pub fn flow(equation: &str, order: usize, set: &[(&str, &str)]) -> SlowFlow {
@@ -377,7 +377,7 @@ fn names_and_memory_of_the_user() {
     let text = "equations = [\"u'' + u + mu*v\", \"v'' + v + u*v\"]\nsmall = \"mu\"";
     let problem = ProblemFile::parse(text).unwrap().problem;
     let refused = |settings: &AveragingSettings, problem| {
-        slow_flow(problem, settings, &mut |_| true).unwrap_err().to_string()
+        slow_flow(problem, settings, Detuned::Beside, &mut |_| true).unwrap_err().to_string()
     };
     let error = refused(&AveragingSettings::default(), &problem);
     assert!(error.ends_with("there is u*v"), "{error}");

@@ -27,7 +27,8 @@ mod frequency;
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
-use crate::driver::{Driver, Expansion, OrderWork, Request, Scheme, run};
+use crate::driver::{Driver, Request, Scheme, run};
+use crate::expansion::{Expansion, OrderWork};
 use lindstedt_algebra::{ClockAlgebra, FunctionAlgebra, Ring};
 use lindstedt_equation::Condition;
 

@@ -40,8 +40,9 @@ use linearise::linearise;
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
-use crate::driver::{OrderWork, Scheme, run};
+use crate::driver::{Scheme, run};
 use crate::evaluator::Evaluator;
+use crate::expansion::OrderWork;
 use lindstedt_algebra::{AmplitudeAlgebra, LinearPart, Split};
 use rug::Rational;
 

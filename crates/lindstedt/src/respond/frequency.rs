@@ -3,6 +3,7 @@
 use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{Error, Exact, Oscillator, SlowFlow, Work};
+use lindstedt_derivation::resonance::Detuned;
 use lindstedt_evaluation::rotating::rotating;
 use rug::Rational;
 
@@ -23,7 +24,7 @@ pub(super) fn resonant(case: &Oscillator, order: usize, work: &Work) -> Result<S
         return Ok(slow);
     }
     for rate in slow.system.resonances_around() {
-        let other = case.flow_from(Some(&rate), order, work)?.value;
+        let other = case.flow_detuned(Detuned::From(&rate), order, work)?.value;
         if couples(&other, small, order) {
             return Ok(other);
         }
@@ -106,7 +107,7 @@ pub(super) fn forcing_frequency(
     let Some(first) = found.first() else { return Ok(None) };
     let (factor, rate) = (first.factor(), first.slow.system.force());
     let shifted = &first.value * Rational::from((1001, 1000));
-    let next = at(&shifted).flow_from(Some(&rate), 1, work)?.value;
+    let next = at(&shifted).flow_detuned(Detuned::From(&rate), 1, work)?.value;
     if Beside::new(next, &shifted).and_then(|next| next.factor()) != factor {
         return Err(moving_frequency(&axis.name));
     }

@@ -5,7 +5,7 @@ use super::{Comparison, Verify};
 use crate::{Error, Oscillator, Progress, SlowFlow};
 use lindstedt_derivation::all_values;
 use lindstedt_derivation::averaging::AveragingSettings;
-use lindstedt_derivation::resonance::{Motion, slow_flow_undetuned};
+use lindstedt_derivation::resonance::{Detuned, Motion, slow_flow};
 use lindstedt_equation::Expression;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
@@ -58,7 +58,7 @@ impl Resonant {
         }
         let order = question.order;
         let asked = AveragingSettings { order, parameters, ..AveragingSettings::default() };
-        let flow = slow_flow_undetuned(problem, &asked, observer)?;
+        let flow = slow_flow(problem, &asked, Detuned::Not, observer)?;
         if flow.order < order {
             return Err(ExpandError::Interrupted { order: flow.order }.into());
         }

@@ -12,8 +12,8 @@
 //! on the Lambda_m alone, and the mean value; for the others it must vanish.
 
 use super::word::{along_lambdas, antiderivative_by_log, by_log, from_gradient, shifted_inverse};
-use super::{Factor, LobachevskyElement, LogPolynomial, Moments, Word};
-use lindstedt_algebra::PhaseError;
+use super::{Factor, Lobachevsky, LobachevskyElement, LogPolynomial, Word};
+use lindstedt_algebra::{PhaseError, RationalAlgebra};
 use lindstedt_coeff::sparse::Monomial;
 use std::collections::BTreeMap;
 
@@ -23,11 +23,11 @@ type Antiderivative<C> = (
 );
 
 /// (F, mean) with f = mean + F'; the constant of integration is arbitrary.
-pub(super) fn antiderivative<C: Moments>(
-    constants: &C,
+pub(super) fn antiderivative<C: RationalAlgebra>(
+    algebra: &Lobachevsky<C>,
     f: &LobachevskyElement<C::Element>,
 ) -> Result<Antiderivative<C>, PhaseError> {
-    let mut mean = constants.zero();
+    let mut mean = algebra.constants.zero();
     let mut blocks = BTreeMap::new();
     for class in [0, 1] {
         let of_class =
@@ -38,7 +38,7 @@ pub(super) fn antiderivative<C: Moments>(
             continue;
         }
         let mut elimination =
-            Elimination { constants, f: part, a: BTreeMap::new(), b: BTreeMap::new() };
+            Elimination { algebra, f: part, a: BTreeMap::new(), b: BTreeMap::new() };
         elimination.positive_powers(class);
         elimination.negative_powers(class);
         if class == 0 {
@@ -56,14 +56,14 @@ pub(super) fn antiderivative<C: Moments>(
     Ok((LobachevskyElement { blocks }, mean))
 }
 
-struct Elimination<'a, C: Moments> {
-    constants: &'a C,
+struct Elimination<'a, C: RationalAlgebra> {
+    algebra: &'a Lobachevsky<C>,
     f: BTreeMap<Factor, &'a LogPolynomial<C::Element>>,
     a: BTreeMap<i32, LogPolynomial<C::Element>>,
     b: BTreeMap<i32, LogPolynomial<C::Element>>,
 }
 
-impl<C: Moments> Elimination<'_, C> {
+impl<C: RationalAlgebra> Elimination<'_, C> {
     fn right_side(&self, power: i32, sine: bool) -> LogPolynomial<C::Element> {
         self.f.get(&Factor { power, sine }).copied().cloned().unwrap_or_default()
     }
@@ -77,13 +77,15 @@ impl<C: Moments> Elimination<'_, C> {
     }
 
     fn subtract(&self, target: &mut LogPolynomial<C::Element>, p: &LogPolynomial<C::Element>) {
-        target.add_assign(self.constants, &p.neg(self.constants));
+        let ring = &self.algebra.constants;
+        target.add_assign(ring, &p.neg(ring));
     }
 
     /// (d - k) p.
     fn shifted(&self, p: &LogPolynomial<C::Element>, k: i32) -> LogPolynomial<C::Element> {
-        let mut image = by_log(self.constants, p);
-        image.add_assign(self.constants, &p.scale(self.constants, &rug::Rational::from(-k)));
+        let ring = &self.algebra.constants;
+        let mut image = by_log(ring, p);
+        image.add_assign(ring, &p.scale(ring, &rug::Rational::from(-k)));
         image
     }
 
@@ -93,7 +95,7 @@ impl<C: Moments> Elimination<'_, C> {
     ///
     /// refer to each other only through E, which lowers the degree in the Lambda_m: iterate.
     fn positive_powers(&mut self, class: i32) {
-        let ring = self.constants;
+        let ring = &self.algebra.constants;
         let top = |factor: &Factor| factor.power + i32::from(factor.sine);
         let mut k = self.f.keys().map(top).max().unwrap_or(0);
         while k > 0 {
@@ -102,11 +104,12 @@ impl<C: Moments> Elimination<'_, C> {
             self.subtract(&mut known, &self.shifted(&self.b(k + 1), k + 1));
             let mut step_a = shifted_inverse(ring, &self.right_side(k - 1, true), k);
             let mut step_b = shifted_inverse(ring, &known.neg(ring), k);
-            step_b.add_assign(ring, &shifted_inverse(ring, &along_lambdas(ring, &step_a), k));
+            step_b
+                .add_assign(ring, &shifted_inverse(ring, &along_lambdas(self.algebra, &step_a), k));
             let (mut a, mut b) = (step_a.clone(), step_b.clone());
             while !step_b.is_zero() {
-                step_a = shifted_inverse(ring, &along_lambdas(ring, &step_b).neg(ring), k);
-                step_b = shifted_inverse(ring, &along_lambdas(ring, &step_a), k);
+                step_a = shifted_inverse(ring, &along_lambdas(self.algebra, &step_b).neg(ring), k);
+                step_b = shifted_inverse(ring, &along_lambdas(self.algebra, &step_a), k);
                 a.add_assign(ring, &step_a);
                 b.add_assign(ring, &step_b);
             }
@@ -118,17 +121,17 @@ impl<C: Moments> Elimination<'_, C> {
 
     /// a_k and b_{k+1} for k < 0 (b_0 is not touched), from the bottom, without coupling.
     fn negative_powers(&mut self, class: i32) {
-        let ring = self.constants;
+        let ring = &self.algebra.constants;
         let bottom = |factor: &Factor| factor.power + i32::from(factor.sine);
         let mut k = self.f.keys().map(bottom).min().unwrap_or(0);
         debug_assert_eq!(k.rem_euclid(2), class);
         while k < 0 {
             let mut known = self.right_side(k - 1, true);
-            self.subtract(&mut known, &along_lambdas(ring, &self.b(k - 1)));
+            self.subtract(&mut known, &along_lambdas(self.algebra, &self.b(k - 1)));
             let a = shifted_inverse(ring, &known, k);
             if k + 1 != 0 {
                 let mut known = self.right_side(k, false);
-                self.subtract(&mut known, &along_lambdas(ring, &a));
+                self.subtract(&mut known, &along_lambdas(self.algebra, &a));
                 known.add_assign(ring, &self.shifted(&self.b(k - 1), k));
                 self.b.insert(k + 1, shifted_inverse(ring, &known, k + 1));
             }
@@ -140,16 +143,16 @@ impl<C: Moments> Elimination<'_, C> {
     /// The equations at cos^{-1} sin and cos^0: a_0 = int (g_{-1} - E b_{-1}) dl + C(Lambda)
     /// and E C = rest - mean. The coefficient of l^m in the latter is dC/dLambda_m / m!.
     fn close_periodic(&mut self) -> Result<C::Element, PhaseError> {
-        let ring = self.constants;
+        let ring = &self.algebra.constants;
         let mut known = self.right_side(-1, true);
-        self.subtract(&mut known, &along_lambdas(ring, &self.b(-1)));
+        self.subtract(&mut known, &along_lambdas(self.algebra, &self.b(-1)));
         let mut a = antiderivative_by_log(ring, &known);
         let mut rest = self.right_side(0, false);
-        self.subtract(&mut rest, &along_lambdas(ring, &a));
+        self.subtract(&mut rest, &along_lambdas(self.algebra, &a));
         self.subtract(&mut rest, &self.shifted(&self.b(1), 1));
         rest.add_assign(ring, &by_log(ring, &self.b(-1)));
         let potential = from_gradient(ring, &rest);
-        self.subtract(&mut rest, &along_lambdas(ring, &potential));
+        self.subtract(&mut rest, &along_lambdas(self.algebra, &potential));
         a.add_assign(ring, &potential);
         self.a.insert(0, a);
         match rest.terms() {
@@ -161,9 +164,9 @@ impl<C: Moments> Elimination<'_, C> {
 
     /// The equation at cos^{-1}, where everything is already determined.
     fn close_antiperiodic(&mut self) -> Result<(), PhaseError> {
-        let ring = self.constants;
+        let ring = &self.algebra.constants;
         let mut rest = self.right_side(-1, false);
-        self.subtract(&mut rest, &along_lambdas(ring, &self.a(-1)));
+        self.subtract(&mut rest, &along_lambdas(self.algebra, &self.a(-1)));
         self.subtract(&mut rest, &by_log(ring, &self.b(0)));
         rest.add_assign(ring, &self.shifted(&self.b(-2), -1));
         if rest.is_zero() { Ok(()) } else { Err(PhaseError::NotIntegrable { power: -1 }) }

@@ -9,33 +9,19 @@
 //! elimination of secular terms is the passage from int l^m/m! to Lambda_m.
 
 mod clock;
-mod formal;
 mod integral;
 mod word;
 
-pub use clock::{Clock, LambdaMonomial, Still, Unfolding};
-pub use formal::Formal;
+pub use clock::{LambdaMonomial, Still, Unfolding};
 pub use word::Word;
 
 use lindstedt_algebra::{
     FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring, Stop,
 };
 use lindstedt_coeff::sparse::{Accumulator, Monomial, Sparse};
-use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
+use lindstedt_coeff::{PolynomialRing, Symbol};
 use rug::Rational;
 use std::collections::BTreeMap;
-
-/// A ring of constants that contains the moments mu_m = (1/m!) <(-ln|cos t|)^m>.
-pub trait Moments: RationalAlgebra {
-    /// mu_m.
-    fn moment(&self, m: u16) -> Self::Element;
-}
-
-impl Moments for PolynomialRing {
-    fn moment(&self, m: u16) -> Polynomial {
-        self.symbol(Symbol::Moment(m))
-    }
-}
 
 /// A polynomial in l and the Lambda_m.
 pub type LogPolynomial<E> = Sparse<Word, E>;
@@ -80,16 +66,27 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> LobachevskyElement<E>
 /// Exact and canonical. `log_abs` knows cos t alone, `reciprocal` the units c cos^k. `resolve` is partial:
 /// it finds the response if it lies in the ring and says `NotIntegrable` if not
 /// (`docs/src/concepts/resonance.md`). A product costs one product of constants per pair of terms.
-#[derive(Clone, Debug, Default)]
-pub struct Lobachevsky<C> {
+#[derive(Clone, Debug)]
+pub struct Lobachevsky<C: Ring> {
     constants: C,
+    /// mu_m = (1/m!) <l^m>.
+    moment: fn(&C, u16) -> C::Element,
     stop: Stop,
 }
 
-impl<C: Moments> Lobachevsky<C> {
-    /// The ring over a ring of constants.
-    pub fn new(constants: C) -> Self {
-        Self { constants, stop: Stop::default() }
+impl Lobachevsky<PolynomialRing> {
+    /// The ring over polynomials, where the mu_m are symbols.
+    pub fn new(constants: PolynomialRing) -> Self {
+        let moment = |ring: &PolynomialRing, m| ring.symbol(Symbol::Moment(m));
+        Self { constants, moment, stop: Stop::default() }
+    }
+}
+
+impl<C: RationalAlgebra> Lobachevsky<C> {
+    /// The ring R_0 in which Lambda_m' = l^m/m!: the same with mu_m = 0. What holds there for the still part of a
+    /// solution holds for all mu_m (`docs/src/concepts/clock.md`), and needs no symbols for them.
+    pub fn formal(constants: C) -> Self {
+        Self { constants, moment: |ring, _| ring.zero(), stop: Stop::default() }
     }
 
     /// The ring whose products are broken off when `stop` says so.
@@ -128,7 +125,7 @@ impl<C: Moments> Lobachevsky<C> {
         &self,
         f: &LobachevskyElement<C::Element>,
     ) -> Result<(LobachevskyElement<C::Element>, C::Element), PhaseError> {
-        let (mut integral, mean) = integral::antiderivative(&self.constants, f)?;
+        let (mut integral, mean) = integral::antiderivative(self, f)?;
         if let Some(value) = self.at_zero(&integral) {
             let constant = self.embed(&self.constants.neg(&value));
             self.add_assign(&mut integral, &constant);
@@ -175,7 +172,7 @@ fn add_block<C: Ring>(
     }
 }
 
-impl<C: Moments> Ring for Lobachevsky<C> {
+impl<C: RationalAlgebra> Ring for Lobachevsky<C> {
     type Element = LobachevskyElement<C::Element>;
 
     fn zero(&self) -> Self::Element {
@@ -234,7 +231,7 @@ impl<C: Moments> Ring for Lobachevsky<C> {
     }
 }
 
-impl<C: Moments> RationalAlgebra for Lobachevsky<C> {
+impl<C: RationalAlgebra> RationalAlgebra for Lobachevsky<C> {
     fn rational(&self, q: &Rational) -> Self::Element {
         self.embed(&self.constants.rational(q))
     }
@@ -263,7 +260,7 @@ where
         .then(|| (factor.power, c.clone()))
 }
 
-impl<C: Moments> FunctionAlgebra for Lobachevsky<C> {
+impl<C: RationalAlgebra> FunctionAlgebra for Lobachevsky<C> {
     type Constants = C;
     fn constants(&self) -> &C {
         &self.constants
@@ -296,7 +293,7 @@ impl<C: Moments> FunctionAlgebra for Lobachevsky<C> {
     }
 }
 
-impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
+impl<C: RationalAlgebra> PhaseAlgebra for Lobachevsky<C> {
     fn cosine(&self) -> Self::Element {
         self.term(1, false, Word::unit(), self.constants.one())
     }
@@ -315,7 +312,7 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
             let mut add = |power, sine, p: &LogPolynomial<C::Element>| {
                 add_block(ring, &mut blocks, Factor { power, sine }, p);
             };
-            add(power, sine, &word::along_lambdas(ring, w));
+            add(power, sine, &word::along_lambdas(self, w));
             let by_log = word::by_log(ring, w);
             let mut lowered = w.scale(ring, &Rational::from(-power));
             lowered.add_assign(ring, &by_log);
@@ -403,7 +400,7 @@ mod tests {
         let force = a.scale(&a.mul(&a.cosine(), &a.log_secant()), &Rational::from(2));
         let solved = a.resolve(&force).ok();
         let c = a.constants();
-        let resonance = c.sub(&c.scale(&c.moment(1), &Rational::from(2)), &c.one());
+        let resonance = c.sub(&c.scale(&c.symbol(Symbol::Moment(1)), &Rational::from(2)), &c.one());
         let x1 = a.sum_of_products(&[(&a.cosine(), &a.log_secant()), (&a.sine(), &a.lambda(1))]);
         let found = solved.map(|s| (s.cos_amplitude, s.response));
         assert_eq!(found, Some((resonance, x1)));

@@ -1,6 +1,7 @@
 //! Products of l and the Lambda_m, and the derivations of polynomials in them.
 
-use super::{LogPolynomial, Moments};
+use super::{Lobachevsky, LogPolynomial};
+use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::sparse::{Accumulator, Monomial, Sparse};
 use rug::{Integer, Rational};
 use smallvec::SmallVec;
@@ -86,7 +87,7 @@ impl Monomial for Word {
 }
 
 /// dw/dl.
-pub(super) fn by_log<C: Moments>(
+pub(super) fn by_log<C: RationalAlgebra>(
     constants: &C,
     w: &LogPolynomial<C::Element>,
 ) -> LogPolynomial<C::Element> {
@@ -98,7 +99,7 @@ pub(super) fn by_log<C: Moments>(
 }
 
 /// The polynomial with derivative w in l and no term free of l.
-pub(super) fn antiderivative_by_log<C: Moments>(
+pub(super) fn antiderivative_by_log<C: RationalAlgebra>(
     constants: &C,
     w: &LogPolynomial<C::Element>,
 ) -> LogPolynomial<C::Element> {
@@ -111,7 +112,7 @@ pub(super) fn antiderivative_by_log<C: Moments>(
 }
 
 /// (d/dl - k)^{-1} w = -(1/k) sum_j (d/dl)^j w / k^j for k not zero.
-pub(super) fn shifted_inverse<C: Moments>(
+pub(super) fn shifted_inverse<C: RationalAlgebra>(
     constants: &C,
     w: &LogPolynomial<C::Element>,
     k: i32,
@@ -126,10 +127,11 @@ pub(super) fn shifted_inverse<C: Moments>(
 }
 
 /// E w = sum_m (l^m/m! - mu_m) dw/dLambda_m.
-pub(super) fn along_lambdas<C: Moments>(
-    constants: &C,
+pub(super) fn along_lambdas<C: RationalAlgebra>(
+    algebra: &Lobachevsky<C>,
     w: &LogPolynomial<C::Element>,
 ) -> LogPolynomial<C::Element> {
+    let constants = &algebra.constants;
     let mut sum = Accumulator::default();
     for (word, c) in w.terms() {
         for index in 1..word.exponents().len() {
@@ -139,7 +141,7 @@ pub(super) fn along_lambdas<C: Moments>(
             let coefficient =
                 Rational::from((u32::from(exponent), Integer::from(Integer::factorial(m))));
             sum.add(constants, lowered.times(&power), constants.scale(c, &coefficient));
-            let moment = constants.mul(&constants.moment(index as u16), c);
+            let moment = constants.mul(&(algebra.moment)(constants, index as u16), c);
             let coefficient = Rational::from(-i32::from(exponent));
             sum.add(constants, lowered, constants.scale(&moment, &coefficient));
         }
@@ -149,7 +151,7 @@ pub(super) fn along_lambdas<C: Moments>(
 
 /// The C(Lambda) without constant term whose gradient is dC/dLambda_m = m! (coefficient of l^m
 /// in w), if the gradient is one: by Euler's relation sum_m Lambda_m dC/dLambda_m = degree C.
-pub(super) fn from_gradient<C: Moments>(
+pub(super) fn from_gradient<C: RationalAlgebra>(
     constants: &C,
     w: &LogPolynomial<C::Element>,
 ) -> LogPolynomial<C::Element> {

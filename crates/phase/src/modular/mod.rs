@@ -13,7 +13,9 @@
 
 mod fields;
 mod pair;
+mod part;
 mod primes;
+mod symmetry;
 mod transform;
 mod words;
 
@@ -23,134 +25,11 @@ pub use pair::PrimePair;
 use lindstedt_algebra::{
     FunctionAlgebra, PhaseAlgebra, PhaseError, Products, RationalAlgebra, Resolution, Ring, Stop,
 };
+use part::{Forms, Part, is_zero, lacking};
 use rug::{Integer, Rational};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
+use symmetry::{SYMMETRIES, Symmetry};
 use transform::Transform;
-
-/// The four symmetries, in this order.
-const SYMMETRIES: [Symmetry; 4] = [
-    Symmetry { sine: false, odd: false },
-    Symmetry { sine: false, odd: true },
-    Symmetry { sine: true, odd: false },
-    Symmetry { sine: true, odd: true },
-];
-
-/// Cosines or sines, of even or of odd multiples of the phase.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Symmetry {
-    sine: bool,
-    odd: bool,
-}
-
-impl Symmetry {
-    fn index(self) -> usize {
-        2 * usize::from(self.sine) + usize::from(self.odd)
-    }
-    /// The k-th multiple: 0, 2, 4 (cosines), 2, 4, 6 (sines) or 1, 3, 5.
-    fn harmonic(self, k: usize) -> usize {
-        match (self.sine, self.odd) {
-            (false, false) => 2 * k,
-            (true, false) => 2 * k + 2,
-            (_, true) => 2 * k + 1,
-        }
-    }
-    fn times(self, other: Self) -> Self {
-        Self { sine: self.sine ^ other.sine, odd: self.odd ^ other.odd }
-    }
-}
-
-/// The part of a function that has one of the symmetries, by Fourier coefficients or by the values at the
-/// points, which determine each other; at least one of the two is there, and the function is not zero. Copies share
-/// both: what is transformed in one is known to all.
-#[derive(Clone, Debug)]
-struct Part {
-    symmetry: Symmetry,
-    forms: Arc<Forms>,
-    transform: Arc<Transform>,
-}
-
-#[derive(Debug, Default)]
-struct Forms {
-    /// The last coefficient does not vanish.
-    coefficients: OnceLock<Vec<Residues>>,
-    values: OnceLock<Vec<Residues>>,
-}
-
-impl Part {
-    fn coefficients(&self) -> &[Residues] {
-        self.forms.coefficients.get_or_init(|| {
-            let values = self.forms.values.get().map_or(&[][..], Vec::as_slice);
-            trimmed(self.transform.coefficients(self.symmetry, values))
-        })
-    }
-
-    fn values(&self) -> &[Residues] {
-        let values = || self.transform.values(self.symmetry, self.coefficients());
-        self.forms.values.get_or_init(values)
-    }
-
-    /// Nothing if it vanishes.
-    fn with_forms(
-        &self,
-        coefficients: Option<Vec<Residues>>,
-        values: Option<Vec<Residues>>,
-    ) -> Option<Self> {
-        let coefficients = coefficients.map(trimmed);
-        let known = coefficients.as_ref().or(values.as_ref())?;
-        if known.iter().all(is_zero) {
-            return None;
-        }
-        Some(Self {
-            forms: Arc::new(Forms {
-                coefficients: coefficients.map_or_else(OnceLock::new, OnceLock::from),
-                values: values.map_or_else(OnceLock::new, OnceLock::from),
-            }),
-            ..self.clone()
-        })
-    }
-
-    fn times(&self, field: &PrimeFields, c: &Residues) -> Option<Self> {
-        let image = |list: &Vec<Residues>| field.combination(&[(list, *c)]);
-        let Forms { coefficients, values } = &*self.forms;
-        self.with_forms(coefficients.get().map(image), values.get().map(image))
-    }
-
-    /// sum_i c_i f_i over parts of one symmetry, in the form that needs the fewest transforms.
-    fn combination(field: &PrimeFields, terms: &[(&Self, Residues)]) -> Option<Self> {
-        let (first, _) = terms.first()?;
-        let [no_coefficients, no_values] = lacking(terms.iter().map(|(part, _)| *part));
-        let by_values = no_values == 0 && terms.len() <= SHORT || no_coefficients > no_values;
-        let by_coefficients = no_coefficients == 0 || !by_values;
-        let combine = |form: fn(&Self) -> &[Residues]| {
-            let lists: Vec<_> = terms.iter().map(|(part, c)| (form(part), *c)).collect();
-            field.combination(&lists)
-        };
-        let coefficients = by_coefficients.then(|| combine(Self::coefficients));
-        first.with_forms(coefficients, by_values.then(|| combine(Self::values)))
-    }
-}
-
-impl PartialEq for Part {
-    fn eq(&self, other: &Self) -> bool {
-        match (self.forms.values.get(), other.forms.values.get()) {
-            (Some(a), Some(b)) => a == b,
-            _ => self.coefficients() == other.coefficients(),
-        }
-    }
-}
-
-fn is_zero(c: &Residues) -> bool {
-    *c == Residues::default()
-}
-
-fn trimmed(mut list: Vec<Residues>) -> Vec<Residues> {
-    list.truncate(list.iter().rposition(|c| !is_zero(c)).map_or(0, |last| last + 1));
-    list
-}
-
-/// Values are combined beside the coefficients in sums of at most so many terms; in longer ones a
-/// transform costs less.
-const SHORT: usize = 8;
 
 /// A function: its part of every symmetry, nothing where that vanishes.
 #[derive(Clone, Debug, PartialEq)]
@@ -397,14 +276,6 @@ fn of_symmetry<'a>(
     terms.iter().filter_map(part).collect()
 }
 
-/// How many parts lack their coefficients, and how many their values.
-fn lacking<'a>(parts: impl Iterator<Item = &'a Part> + Clone) -> [usize; 2] {
-    let no = |form: fn(&Forms) -> &OnceLock<Vec<Residues>>| {
-        parts.clone().filter(|part| form(&part.forms).get().is_none()).count()
-    };
-    [no(|forms| &forms.coefficients), no(|forms| &forms.values)]
-}
-
 fn add_lists(field: &PrimeFields, a: &mut [Residues], b: &[Residues]) {
     for (x, y) in a.iter_mut().zip(b) {
         field.add_assign(x, y);
@@ -514,13 +385,8 @@ impl FunctionAlgebra for Modular {
         ModularElement { parts: parts.map(|part| part.as_ref()?.times(&self.field, c)) }
     }
     fn linear_combination(&self, terms: &[(&ModularElement, &Residues)]) -> ModularElement {
-        let parts = SYMMETRIES.map(|symmetry| {
-            let of_terms: Vec<(&Part, Residues)> = terms
-                .iter()
-                .filter_map(|(f, c)| Some((f.parts[symmetry.index()].as_ref()?, **c)))
-                .collect();
-            Part::combination(&self.field, &of_terms)
-        });
+        let parts = SYMMETRIES
+            .map(|symmetry| Part::combination(&self.field, &of_symmetry(terms, symmetry)));
         ModularElement { parts }
     }
     fn linear_combinations(
@@ -627,52 +493,4 @@ impl PhaseAlgebra for Modular {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use lindstedt_algebra::laws;
-
-    #[test]
-    fn laws_hold() {
-        let (points, modulus) = Modular::points_for_degree(24);
-        let field = PrimeFields::with_roots_of_unity(modulus).next();
-        let a = field.and_then(|field| Modular::new(field, points)).expect("an algebra");
-        let n = |k: i64| a.field.integer(&Integer::from(k));
-        let mixed =
-            a.from_harmonics([vec![n(3), n(-1), n(4), n(0), n(7)], vec![n(0), n(5), n(9), n(-2)]]);
-        let odd = a.from_harmonics([vec![n(0), n(2), n(0), n(-6)], Vec::new()]);
-        let samples = [a.zero(), a.one(), a.cosine(), a.sine(), mixed, odd];
-        // `as_rational` does not apply to a finite field; the other laws do.
-        assert_eq!(laws::ring(&a, &samples), Ok(()));
-        assert_eq!(laws::derivation_and_solution(&a, &samples), Ok(()));
-    }
-
-    /// Coefficients that are not those of the values, of one function among some, in one place modulo one prime.
-    #[test]
-    fn forms_that_differ_are_found() {
-        let (points, modulus) = Modular::points_for_first_harmonic(24);
-        let field = PrimeFields::with_roots_of_unity(modulus).next().expect("primes");
-        let a = Modular::new(field, points).expect("an algebra");
-        let n = |k: i64| a.field.integer(&Integer::from(k));
-        let mut f: Vec<ModularElement> = (1..6)
-            .map(|k| a.from_harmonics([vec![n(k), n(0), n(3)], vec![n(0), n(2), n(1), n(7)]]))
-            .collect();
-        let powers = vec![(0..5).map(|k| a.field.power(&n(987_654_321), k)).collect()];
-        for part in f.iter().flat_map(|f| &f.parts).flatten() {
-            part.values();
-        }
-        assert!(a.forms_agree(&f, &powers));
-        for symmetry in SYMMETRIES {
-            let right = f[2].clone();
-            if let Some(part) = &right.parts[symmetry.index()] {
-                let mut values = part.values().to_vec();
-                values[points / 2][5] ^= 1;
-                let coefficients = part.coefficients().to_vec();
-                f[2].parts[symmetry.index()] = part.with_forms(Some(coefficients), Some(values));
-                assert!(!a.forms_agree(&f, &powers), "{symmetry:?}");
-            }
-            f[2] = right;
-        }
-        // There are no odd cosines.
-        assert_eq!(f[2].parts.iter().flatten().count(), 3);
-    }
-}
+mod tests;

@@ -13,8 +13,8 @@
 //!
 //! and sin (2k+1) theta is (-1)^k cos (2k+1) (pi/2 - theta), the points in reverse.
 
-use super::Symmetry;
 use super::fields::{Kernel, Moduli, PrimeFields, Residues};
+use super::symmetry::Symmetry;
 use super::words::Words;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;
@@ -371,7 +371,7 @@ fn negate_odd(field: &PrimeFields, list: &mut [Residues]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::SYMMETRIES;
+    use super::super::symmetry::SYMMETRIES;
     use super::*;
 
     /// Every basis function at every point, against its definition, and back; at the largest degree, too.

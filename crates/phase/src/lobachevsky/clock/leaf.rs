@@ -57,12 +57,6 @@ impl<C: RationalAlgebra> Leaves<'_, C> {
         f
     }
 
-    /// -f.
-    pub fn negated(&self, f: &Leaf<C::Element>) -> Leaf<C::Element> {
-        let negated = |list: &Vec<C::Element>| list.iter().map(|c| self.0.neg(c)).collect();
-        f.iter().map(|(factor, list)| (*factor, negated(list))).collect()
-    }
-
     /// f - g.
     pub fn difference(&self, f: Leaf<C::Element>, g: &Leaf<C::Element>) -> Leaf<C::Element> {
         let mut f = f;
@@ -137,21 +131,6 @@ impl<C: RationalAlgebra> Leaves<'_, C> {
             }
         }
         self.trimmed(sum)
-    }
-
-    /// The product of a series of constants and a series of functions, orders 0 to `order`.
-    pub fn times(
-        &self,
-        a: &[C::Element],
-        f: &[Leaf<C::Element>],
-        order: usize,
-    ) -> Vec<Leaf<C::Element>> {
-        let nonzero: Vec<_> = a.iter().enumerate().filter(|(_, c)| !self.0.is_zero(c)).collect();
-        let coefficient = |n: usize| {
-            let known = nonzero.iter().filter_map(|&(k, c)| Some((c, f.get(n.checked_sub(k)?)?)));
-            self.combination(&known.collect::<Vec<_>>())
-        };
-        (0..=order).map(coefficient).collect()
     }
 
     /// sum_i a_i f_i.

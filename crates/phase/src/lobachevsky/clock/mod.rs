@@ -9,21 +9,20 @@
 //! law c_m = u^m, so that j and the weight decide), which leaves one multiplication by 1/(s! prod k_m!) for a term.
 //! `docs/src/concepts/clock.md` has the proof.
 
-mod check;
 mod leaf;
 mod monomials;
 mod unfolding;
 
-use super::{Factor, Lobachevsky, LobachevskyElement, LogPolynomial, Moments, Word};
+use super::{Factor, Lobachevsky, LobachevskyElement, LogPolynomial, Word};
 use leaf::factorial;
-use lindstedt_algebra::{ClockAlgebra, RationalAlgebra, Ring, StillAndClock, Stop};
+use lindstedt_algebra::{ClockAlgebra, RationalAlgebra, Ring, StillAndClock};
 use lindstedt_coeff::sparse::Sparse;
 use rug::Rational;
 
 pub use monomials::LambdaMonomial;
 pub use unfolding::Unfolding;
 
-impl<C: Moments> ClockAlgebra for Lobachevsky<C> {
+impl<C: RationalAlgebra> ClockAlgebra for Lobachevsky<C> {
     fn pace(&self, numbers: &[C::Element]) -> Self::Element {
         let terms = (1u16..).zip(numbers).map(|(m, c)| {
             let inverse = Rational::from((1, factorial(m.into())));
@@ -62,36 +61,5 @@ impl<C: Moments> ClockAlgebra for Lobachevsky<C> {
     }
 }
 
-/// A clock over constants C and the ring with the moments mu_m in which the functions are wanted.
-pub struct Clock<'a, C: RationalAlgebra, T: Moments> {
-    /// The constants of the clock.
-    pub constants: &'a C,
-    /// The constants with moments.
-    pub target: &'a T,
-    /// C in T.
-    pub lift: &'a (dyn Fn(&C::Element) -> T::Element + Sync),
-    /// The element of C that an element of T is, if it is one.
-    pub restrict: &'a (dyn Fn(&T::Element) -> Option<C::Element> + Sync),
-    /// c_mn by order n and then m - 1; nothing at order 0.
-    pub numbers: &'a [Vec<C::Element>],
-    /// Asked between the parts whether to stop.
-    pub stop: Stop,
-}
-
-/// An element of the Lobachevsky ring over the formal constants of a clock.
+/// An element of the Lobachevsky ring over the constants of a clock.
 pub type Still<C> = LobachevskyElement<<C as Ring>::Element>;
-
-impl<C: RationalAlgebra, T: Moments> Clock<'_, C, T> {
-    fn order(&self) -> usize {
-        self.numbers.len().saturating_sub(1)
-    }
-
-    /// x_0, x_1, ... from p_0, p_1, ...; nothing where these are not still, where `numbers` has not one list for each
-    /// of them, or when stopped.
-    ///
-    /// Cost: a product of rational numbers per term of the result, beside O(N^3) small products.
-    pub fn unfold(&self, still: &[Still<C>]) -> Option<Vec<LobachevskyElement<T::Element>>> {
-        let parts = Unfolding::new(self.constants, self.numbers, None, still, &self.stop)?;
-        (0..still.len()).map(|n| parts.function(n, self.constants, self.lift, &self.stop)).collect()
-    }
-}

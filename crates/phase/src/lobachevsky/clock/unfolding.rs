@@ -3,7 +3,7 @@
 //! Where all c_m are powers of one rational series v (the power law: v = delta/(1 + delta)), everything is kept in
 //! powers of v, where a product of the c_m is one power and D^j p has O(j) coefficients an order in place of O(j N).
 
-use super::super::{Factor, Formal, Lobachevsky, LobachevskyElement, Word};
+use super::super::{Factor, Lobachevsky, LobachevskyElement, Word};
 use super::leaf::{Leaf, Leaves, factorial};
 use super::monomials::{LambdaMonomial, Monomials};
 use super::{ClockAlgebra, Still};
@@ -17,10 +17,10 @@ use std::fmt::Debug;
 ///
 /// ```
 /// use lindstedt_algebra::{PhaseAlgebra, Rationals, Ring, Stop};
-/// use lindstedt_phase::{Lobachevsky, lobachevsky::{Formal, Unfolding}};
+/// use lindstedt_phase::{Lobachevsky, lobachevsky::Unfolding};
 /// use rug::Rational;
 /// // To order 1 the power law has p = cos + delta cos l and c_1 = delta: x_1 = cos l + sin Lambda_1.
-/// let ring = Lobachevsky::new(Formal(Rationals));
+/// let ring = Lobachevsky::formal(Rationals);
 /// let still = [ring.cosine(), ring.mul(&ring.cosine(), &ring.log_secant())];
 /// let numbers = [vec![], vec![Rational::from(1)]];
 /// let stop = Stop::default();
@@ -279,11 +279,11 @@ impl<E: Clone + PartialEq + Debug + Send + Sync> Unfolding<E> {
     /// The first order at which that is seen to fail; 0 where the lists do not fit together.
     pub fn judge<C: RationalAlgebra<Element = E> + Clone>(
         &self,
-        algebra: &Lobachevsky<Formal<C>>,
+        algebra: &Lobachevsky<C>,
         numbers: &[Vec<E>],
         still: &[Still<C>],
     ) -> Option<Result<(), usize>> {
-        let constants = &algebra.constants.0;
+        let constants = &algebra.constants;
         let order = self.order();
         if numbers.len() != order + 1 || still.len() != order + 1 {
             return Some(Err(0));
