@@ -136,15 +136,17 @@ impl Evaluation {
     }
 }
 
-/// The order that takes well below a second.
+/// The order that takes well below a second: of a polynomial of high degree, whose x_n have as many more terms, a lower one.
 #[must_use]
 pub fn default_order(form: &Form) -> usize {
     match form {
         Form::PowerLaw { .. } => 20,
         Form::Sums => 24,
         Form::Cubic { .. } => 30,
-        Form::Relaxation => 60,
-        Form::Conservative | Form::Polynomial => 24,
+        Form::Relaxation { degree: 0..=3 } => 60,
+        Form::Relaxation { degree } => (100 / degree).max(6),
+        Form::Conservative | Form::Polynomial { degree: 0..=3 } => 24,
+        Form::Polynomial { degree } => (60 / degree).max(6),
         Form::Logarithmic => 8,
     }
 }

@@ -37,9 +37,15 @@ pub enum Form {
     /// x'' + kappa x + small f(x), f free of x'.
     Conservative,
     /// A limit cycle of an equation that t -> -t, small -> -small leaves as it is.
-    Relaxation,
+    Relaxation {
+        /// Of its terms, the highest.
+        degree: usize,
+    },
     /// Another equation over Q.
-    Polynomial,
+    Polynomial {
+        /// Of its terms, the highest; that of a cubic where they are no polynomial.
+        degree: usize,
+    },
     /// Another equation with logarithms.
     Logarithmic,
 }
@@ -389,7 +395,8 @@ fn form(problem: &Problem, condition: Condition, equation: &Expression) -> Form 
         return Form::Sums;
     }
     let Some(terms) = polynomial(equation) else {
-        return if has_logarithms(equation) { Form::Logarithmic } else { Form::Polynomial };
+        let other = Form::Polynomial { degree: 3 };
+        return if has_logarithms(equation) { Form::Logarithmic } else { other };
     };
     let get = |key: [u32; 3]| terms.get(&key).cloned();
     if let (Some(stiffness), Some(coefficient)) = (get([0, 1, 0]), get([1, 3, 0]))
@@ -400,14 +407,15 @@ fn form(problem: &Problem, condition: Condition, equation: &Expression) -> Form 
         return Form::Cubic { stiffness, coefficient };
     }
     let keys = || terms.keys();
+    let degree = keys().map(|[_, x, velocity]| (x + velocity) as usize).max().unwrap_or(1);
     if condition != Condition::LimitCycle && keys().all(|[order, _, v]| *order <= 1 && *v == 0) {
         Form::Conservative
     } else if condition == Condition::LimitCycle
         && keys().all(|[order, _, velocity]| (order + velocity) % 2 == 0)
     {
-        Form::Relaxation
+        Form::Relaxation { degree }
     } else {
-        Form::Polynomial
+        Form::Polynomial { degree }
     }
 }
 

@@ -54,8 +54,10 @@ pub fn default_solution_order(form: &Form) -> usize {
         Form::PowerLaw { .. } => 10,
         Form::Sums | Form::Logarithmic => 8,
         Form::Cubic { .. } => 24,
-        Form::Relaxation => 40,
-        Form::Conservative | Form::Polynomial => 20,
+        Form::Relaxation { degree: 0..=3 } => 40,
+        Form::Relaxation { degree } => (70 / degree).max(6),
+        Form::Conservative | Form::Polynomial { degree: 0..=3 } => 20,
+        Form::Polynomial { degree } => (50 / degree).max(6),
     }
 }
 

@@ -396,13 +396,13 @@ fn derived(setting: &Setting, series: Series) -> Source {
     let step_power = i64::try_from(step).unwrap_or(1);
     // T ~ small for relaxation oscillations; small f(x) alone makes the time scale small^(-1/2).
     let power = match setting.form {
-        Form::Relaxation => Rational::from((1, step_power)),
+        Form::Relaxation { .. } => Rational::from((1, step_power)),
         Form::Conservative => Rational::from((-1, 2 * step_power)),
         _ => Rational::new(),
     };
     let scale = match setting.form {
         // Damping and stiffness are equal at small = 1.
-        Form::Relaxation => Rational::from(1),
+        Form::Relaxation { .. } => Rational::from(1),
         _ => coefficients(64).map_or_else(|| Rational::from(1), |c| scale(&c)),
     };
     let point = setting.clone();

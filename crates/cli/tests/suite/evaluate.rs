@@ -391,6 +391,16 @@ fn generated_code_deviates_as_it_says() {
     assert!((start - 1.0).abs() > 1e-8, "nothing is left out here: {start}");
 }
 
+/// The default order is a quick one whatever the degree: the x_n of x^4 x' have three times the harmonics of x^2 x' (order 60 takes
+/// two minutes). The period is that of DOP853 of SciPy, rtol 1e-13.
+#[test]
+fn the_default_order_falls_with_the_degree() {
+    let found = json(&["x'' + x + eps*(-x' + x^4*x'/2) = 0", "--set", "eps=1", "--digits", "14"]);
+    assert_eq!(found["order"], 20);
+    let period: f64 = found["period"]["decimal"].as_str().unwrap().parse().unwrap();
+    assert!((period - 7.068_830_327_67).abs() < 1e-10, "{period}");
+}
+
 /// The phase is that of the times whatever the harmonics are of: the sum in its default order, one of an order asked for, and
 /// Newton's orbit, which the sum of so strong a cycle makes way for.
 #[test]
