@@ -52,7 +52,10 @@ impl Frequency {
     ) -> PyResult<Pair<'py>> {
         let (small, amplitude) = (small.as_slice()?, amplitude.as_slice()?);
         let count = small.len().max(amplitude.len());
-        let list = |work: &Work| Ok(self.0.value.list(small, amplitude, &work.stop));
+        let list = |work: &Work| {
+            check_room(count, size_of::<Estimated>(), work)?;
+            Ok(self.0.value.list(small, amplitude, &work.stop))
+        };
         Ok(pair(py, means.list(py, count, list)?))
     }
 }
@@ -93,7 +96,7 @@ impl Motions {
             let (mut values, mut errors) = (Vec::new(), Vec::new());
             for x in self.0.value.list(small, amplitude, &work.stop) {
                 values.append(&mut x.list(times, &work.stop));
-                errors.append(&mut x.errors(times));
+                errors.append(&mut x.errors(times, &work.stop));
                 if work.stop.asked() {
                     break;
                 }
@@ -124,7 +127,10 @@ impl Motion {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let times = times.as_slice()?;
         let count = times.len().saturating_mul(self.0.value.harmonics.len());
-        let values = means.list(py, count, |work| Ok(self.0.value.list(times, &work.stop)))?;
+        let values = means.list(py, count, |work| {
+            check_room(times.len(), size_of::<f64>(), work)?;
+            Ok(self.0.value.list(times, &work.stop))
+        })?;
         Ok(values.into_pyarray(py))
     }
 
@@ -136,7 +142,10 @@ impl Motion {
         means: &Means,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let times = times.as_slice()?;
-        let errors = means.list(py, times.len(), |_| Ok(self.0.value.errors(times)))?;
+        let errors = means.list(py, times.len(), |work| {
+            check_room(times.len(), size_of::<f64>(), work)?;
+            Ok(self.0.value.errors(times, &work.stop))
+        })?;
         Ok(errors.into_pyarray(py))
     }
 }

@@ -542,3 +542,41 @@ def test_the_readme_is_true() -> None:
     assert found.attempted >= 7 and found.failed == 0
     for module in (lindstedt, lindstedt._numbers, lindstedt._oscillator):
         assert doctest.testmod(module).failed == 0
+
+
+def test_arrays_as_they_come(duffing: Oscillator) -> None:
+    omega = duffing.frequency_function(order=12)
+    shifted = np.frombuffer(b"\0" + np.array([0.1, 0.5]).tobytes(), offset=1)
+    assert not shifted.flags.aligned and (omega(shifted, 1.0) == omega([0.1, 0.5], 1.0)).all()
+    with pytest.raises(lindstedt.UsageError, match="masked"):
+        omega(np.ma.masked_array([0.1, 1e3], mask=[0, 1]), 1.0)
+    assert omega(np.ma.masked_array([0.1], mask=[0]), 1.0) == omega([0.1], 1.0)
+    with pytest.raises(lindstedt.StoppedError):
+        omega.at_each([f"{k}/1000" for k in range(1, 301)], 1, digits=100, seconds=0.05)
+    many = np.ones(200_000)
+    solution = duffing.set(eps="1/2").solution()
+    for call in (lambda: omega(many, 1.0, memory=1), lambda: solution(many, memory=1), lambda: solution.error(many, memory=1)):
+        with pytest.raises(lindstedt.LindstedtError, match="MiB|memory"):
+            call()
+
+
+def test_what_is_refused_where_it_is_read_is_refused_when_asked(duffing: Oscillator) -> None:
+    make, values = duffing.frequency_function(order=12).__reduce__()
+    oscillator, name, options = values
+    refused = make(oscillator, name, {**options, "order": 10**9})
+    with pytest.raises(lindstedt.LindstedtError):
+        refused([0.1], 1.0)
+    with pytest.raises(lindstedt.LindstedtError):
+        refused.parameters
+
+
+def test_plots_are_over_what_varies() -> None:
+    plt = pytest.importorskip("matplotlib.pyplot")
+    forced = Oscillator("x'' + x + eps*(x'/5 + x^3) = eps*F*cos((1 + eps*sigma)*t)", eps="1/10", F="1/2")
+    axes = forced.respond("sigma=-1..3").plot(plt.figure().gca())
+    assert axes.get_xlabel() == "sigma"
+    places = axes.lines[0].get_xdata()
+    assert min(places) == -1 and max(places) == 3
+    swept = Oscillator.builtin("duffing").evaluate(sweep="eps=0..1:5").plot(plt.figure().gca())
+    assert {line.get_label() for line in swept.lines} == {"period", "frequency", "exact_period"}
+    plt.close("all")

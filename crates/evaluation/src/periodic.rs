@@ -73,10 +73,15 @@ impl PeriodicSolution {
         if error <= self.size { error } else { f64::INFINITY }
     }
 
-    /// The errors at many times.
+    /// The errors at many times; those that stopped work did not reach are infinite.
     #[must_use]
-    pub fn errors(&self, times: &[f64]) -> Vec<f64> {
-        times.par_iter().with_min_len(BLOCK).map(|time| self.error(*time)).collect()
+    pub fn errors(&self, times: &[f64], stop: &Stop) -> Vec<f64> {
+        let mut errors = vec![f64::INFINITY; times.len()];
+        let blocks = errors.par_chunks_mut(BLOCK).zip(times.par_chunks(BLOCK));
+        blocks.filter(|_| !stop.asked()).for_each(|(errors, times)| {
+            errors.iter_mut().zip(times).for_each(|(error, time)| *error = self.error(*time));
+        });
+        errors
     }
 
     /// x at many times, on all cores; those that stopped work did not reach are no numbers.

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from ._errors import NoAnswerError, UsageError
@@ -138,8 +139,10 @@ class Answer:
         return pandas.DataFrame(self.table())
 
     def plot(self, ax: Any = None, **style: Any) -> Any:
-        """Draws the table over its first column with matplotlib, one line per column of numbers."""
-        columns = {n: c for n, c in self.table().items() if c and not any(isinstance(x, str) for x in c)}
+        """Draws the table over its first column of numbers with matplotlib, one line per column, of branches and orbits one each.
+        Errors are not drawn."""
+        columns = {n: numbers for n, c in self.table().items() if (numbers := _drawn(n, c))}
+        parts = next((columns.pop(n) for n in ("branch", "orbit") if n in columns), None)
         if not columns:
             hint = "evaluate with times or a sweep, simulate, respond with a sweep"
             raise NoAnswerError("this answer has no table of numbers to draw", "figure", hint)
@@ -147,8 +150,12 @@ class Answer:
 
         ax = ax if ax is not None else plt.gca()
         (name, across), *rest = columns.items()
-        for label, column in rest:
-            ax.plot(across, column, label=label, **style)
+        for part in sorted(set(parts or [0.0])):
+            inside = [parts is None or place == part for place in parts or across]
+            for k, (label, column) in enumerate(rest):
+                line = [[x for x, drawn in zip(c, inside) if drawn] for c in (across, column)]
+                first = part == min(parts or [0.0])
+                ax.plot(*line, label=label if first else None, **{"color": f"C{k % 10}", **style})
         ax.set_xlabel(name)
         if rest:
             ax.legend()
@@ -162,6 +169,17 @@ class Answer:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(_found=None, _kept=state["kept"], _data=state["data"])
         self._read = read(self._data)
+
+
+def _drawn(name: str, column: list[Any]) -> list[float] | None:
+    """A column as numbers; None of what is not drawn."""
+    if name.endswith("error") or name == "refused":
+        return None
+    try:
+        numbers = [float(Fraction(x)) if isinstance(x, str) else float(x) for x in column]
+    except (TypeError, ValueError, ZeroDivisionError):
+        return None
+    return numbers if any(x == x for x in numbers) else None
 
 
 def _cell(text: str) -> Any:

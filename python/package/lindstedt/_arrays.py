@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
-from ._errors import UsageError
+from ._errors import LindstedtError, StoppedError, UsageError
 from ._means import limited
 from ._numbers import Number, Value, each, exact, several, shown
 
@@ -27,6 +27,8 @@ Points = Union[ArrayLike, Real, Sequence[Real], Sequence[Sequence[Real]]]
 
 
 def _doubles(values: Points) -> Doubles:
+    if numpy.ma.is_masked(values):
+        raise UsageError("masked values have no number", "value", ".filled(numpy.nan)")
     try:
         array = numpy.asarray(values)
         if array.dtype == numpy.float64:
@@ -43,7 +45,7 @@ def _doubles(values: Points) -> Doubles:
 
 
 def _flat(values: Points) -> Doubles:
-    return numpy.ascontiguousarray(_doubles(values)).ravel()
+    return numpy.require(_doubles(values), requirements=["C_CONTIGUOUS", "ALIGNED"]).ravel()
 
 
 class _Made:
@@ -84,7 +86,26 @@ class _Made:
 
 
 def _again(oscillator: Oscillator, name: str, options: dict[str, Any]) -> Any:
-    return getattr(oscillator, name)(**options)
+    try:
+        return getattr(oscillator, name)(**options)
+    except LindstedtError as error:
+        # An error while an argument is read kills a worker of a pool, whose caller then waits for ever.
+        return _Refused(error)
+
+
+class _Refused:
+    """What could not be derived anew where it was read: whatever is asked of it is refused with the reason."""
+
+    def __init__(self, error: LindstedtError) -> None:
+        self._error = error
+
+    def __call__(self, *values: Any, **limits: Any) -> Any:
+        raise self._error
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise self._error
 
 
 class _OfParameters(_Made):
@@ -145,7 +166,7 @@ class FrequencyFunction(_OfParameters):
         self, small: Sequence[Value] | Doubles, amplitude: Value | None = None, digits: int = 30, **limits: float
     ) -> list[Number | None]:
         """omega at many values of the small parameter to so many digits, each with its error, derived once: by the sweep of
-        `evaluate`. None where the sum has not one digit."""
+        `evaluate`. None where the sum has not one digit, or the point is refused; `evaluate(sweep=...)` tells why."""
         name = self.parameters[0]
         points = several(small, name)
         if not points:
@@ -153,6 +174,8 @@ class FrequencyFunction(_OfParameters):
         values = self._values(points[0], amplitude)
         del values[name]
         found = self._evaluated(digits, {"sweep": {name: points}, **limits}, **values)
+        if str(found["standing"]).startswith("stopped"):
+            raise StoppedError("stopped before all values were there", "stopped", "more seconds")
         return [point.get("frequency") for point in found["points"]]
 
     def with_error(
