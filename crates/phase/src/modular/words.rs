@@ -116,37 +116,45 @@ mod x86 {
         };
     }
 
+    /// What differs in the points and the names of instructions alone.
+    macro_rules! alike {
+        ([$($row:literal),*], $each:ident, $set:ident: $add:ident, $multiply:ident, $shift:ident) => {
+            const ROWS: usize = [$($row),*].len();
+
+            #[inline(always)]
+            fn load(self, rows: &[Residues]) -> Self::Word {
+                cast([$(rows[$row]),*])
+            }
+            #[inline(always)]
+            fn same(self, row: &Residues) -> Self::Word {
+                cast([*row; Self::ROWS])
+            }
+            #[inline(always)]
+            fn store(self, word: Self::Word, rows: &mut [Residues]) {
+                let points: [Residues; Self::ROWS] = cast(word);
+                for (to, from) in rows.iter_mut().zip(points) {
+                    *to = from;
+                }
+            }
+            #[inline(always)]
+            fn accumulate(self, t: Self::Word, a: Self::Word, b: Self::Word) -> Self::Word {
+                $each!(|I| self.$set.$add(t[I], self.$set.$multiply(a[I], b[I])))
+            }
+            #[inline(always)]
+            fn product(self, a: Self::Word, b: Self::Word) -> Self::Word {
+                $each!(|I| self.$set.$multiply(a[I], b[I]))
+            }
+            #[inline(always)]
+            fn high(self, a: Self::Word) -> Self::Word {
+                $each!(|I| self.$set.$shift::<32>(a[I]))
+            }
+        };
+    }
+
     impl Words for V1 {
         type Word = [__m128i; 4];
-        const ROWS: usize = 2;
+        alike!([0, 1], four, sse2: _mm_add_epi64, _mm_mul_epu32, _mm_srli_epi64);
 
-        #[inline(always)]
-        fn load(self, rows: &[Residues]) -> Self::Word {
-            cast([rows[0], rows[1]])
-        }
-        #[inline(always)]
-        fn same(self, row: &Residues) -> Self::Word {
-            cast([*row; 2])
-        }
-        #[inline(always)]
-        fn store(self, word: Self::Word, rows: &mut [Residues]) {
-            let points: [Residues; 2] = cast(word);
-            for (to, from) in rows.iter_mut().zip(points) {
-                *to = from;
-            }
-        }
-        #[inline(always)]
-        fn accumulate(self, t: Self::Word, a: Self::Word, b: Self::Word) -> Self::Word {
-            four!(|I| self.sse2._mm_add_epi64(t[I], self.sse2._mm_mul_epu32(a[I], b[I])))
-        }
-        #[inline(always)]
-        fn product(self, a: Self::Word, b: Self::Word) -> Self::Word {
-            four!(|I| self.sse2._mm_mul_epu32(a[I], b[I]))
-        }
-        #[inline(always)]
-        fn high(self, a: Self::Word) -> Self::Word {
-            four!(|I| self.sse2._mm_srli_epi64::<32>(a[I]))
-        }
         #[inline(always)]
         fn fold(self, t: Self::Word, one: Self::Word) -> Self::Word {
             let mask = self.sse2._mm_set1_epi64x(0xffff_ffff);
@@ -170,35 +178,8 @@ mod x86 {
 
     impl Words for V3 {
         type Word = [__m256i; 4];
-        const ROWS: usize = 4;
+        alike!([0, 1, 2, 3], four, avx2: _mm256_add_epi64, _mm256_mul_epu32, _mm256_srli_epi64);
 
-        #[inline(always)]
-        fn load(self, rows: &[Residues]) -> Self::Word {
-            cast([rows[0], rows[1], rows[2], rows[3]])
-        }
-        #[inline(always)]
-        fn same(self, row: &Residues) -> Self::Word {
-            [cast(*row); 4]
-        }
-        #[inline(always)]
-        fn store(self, word: Self::Word, rows: &mut [Residues]) {
-            let points: [Residues; 4] = cast(word);
-            for (to, from) in rows.iter_mut().zip(points) {
-                *to = from;
-            }
-        }
-        #[inline(always)]
-        fn accumulate(self, t: Self::Word, a: Self::Word, b: Self::Word) -> Self::Word {
-            four!(|I| self.avx2._mm256_add_epi64(t[I], self.avx2._mm256_mul_epu32(a[I], b[I])))
-        }
-        #[inline(always)]
-        fn product(self, a: Self::Word, b: Self::Word) -> Self::Word {
-            four!(|I| self.avx2._mm256_mul_epu32(a[I], b[I]))
-        }
-        #[inline(always)]
-        fn high(self, a: Self::Word) -> Self::Word {
-            four!(|I| self.avx2._mm256_srli_epi64::<32>(a[I]))
-        }
         #[inline(always)]
         fn fold(self, t: Self::Word, one: Self::Word) -> Self::Word {
             let zero = self.avx._mm256_setzero_si256();
@@ -219,37 +200,8 @@ mod x86 {
 
     impl Words for V4 {
         type Word = [__m512i; 2];
-        const ROWS: usize = 4;
+        alike!([0, 1, 2, 3], two, avx512f: _mm512_add_epi64, _mm512_mul_epu32, _mm512_srli_epi64);
 
-        #[inline(always)]
-        fn load(self, rows: &[Residues]) -> Self::Word {
-            cast([rows[0], rows[1], rows[2], rows[3]])
-        }
-        #[inline(always)]
-        fn same(self, row: &Residues) -> Self::Word {
-            [cast([*row; 2]); 2]
-        }
-        #[inline(always)]
-        fn store(self, word: Self::Word, rows: &mut [Residues]) {
-            let points: [Residues; 4] = cast(word);
-            for (to, from) in rows.iter_mut().zip(points) {
-                *to = from;
-            }
-        }
-        #[inline(always)]
-        fn accumulate(self, t: Self::Word, a: Self::Word, b: Self::Word) -> Self::Word {
-            two!(|I| {
-                self.avx512f._mm512_add_epi64(t[I], self.avx512f._mm512_mul_epu32(a[I], b[I]))
-            })
-        }
-        #[inline(always)]
-        fn product(self, a: Self::Word, b: Self::Word) -> Self::Word {
-            two!(|I| self.avx512f._mm512_mul_epu32(a[I], b[I]))
-        }
-        #[inline(always)]
-        fn high(self, a: Self::Word) -> Self::Word {
-            two!(|I| self.avx512f._mm512_srli_epi64::<32>(a[I]))
-        }
         #[inline(always)]
         fn fold(self, t: Self::Word, one: Self::Word) -> Self::Word {
             let lower = two!(|I| self.avx512f._mm512_maskz_mov_epi32(0x5555, t[I]));
