@@ -425,3 +425,23 @@ fn a_table_of_orders_counts_with_one() {
     });
     assert!(!one.is_empty() && one == other, "{one:?} {other:?}");
 }
+
+/// Three times the frequency of a strong force: shooting and harmonic balance (helped by neither) have a stable orbit with the third
+/// harmonic 0.1545; the slow flow of order 6 has no state at all, and what is proved of it is not left alone.
+#[test]
+fn no_state_where_the_orders_before_have_one() {
+    let equation =
+        "x'' + x + eps*(3/10*x' + x^3/2 + 9/5*x^2 + x^5/5) = 19/10*cos((1/3 - 13/10*eps)*t)";
+    let case = Oscillator::parse(equation).unwrap().set("eps", "1/40").unwrap();
+    let found = case.respond(&to_order(6), &Work::default()).unwrap();
+    assert_eq!((found.value.states[0].count, found.value.states[0].count_proved), (0, true));
+    let said =
+        found.remarks.iter().any(|remark| remark.0.contains("order 6 has no state where order 5"));
+    assert!(said, "{:?}", found.remarks);
+    // True: 0.892 with the phase 2.64, orders 1 to 6: 0.575, 0.402, 0.679, 0.475, 0.694, 0.479 with phases that jump.
+    let equation = "x'' + x + eps*(3/10*x' + x^3 + 7/5*x^2 + 2/5*x^5) = 6/5*cos((1/2 + 2*eps)*t)";
+    let case = Oscillator::parse(equation).unwrap().set("eps", "1/40").unwrap();
+    let found = case.respond(&to_order(4), &Work::default()).unwrap();
+    let said = found.remarks.iter().any(|remark| remark.0.contains("far from those of order 3"));
+    assert!(said, "{:?}", found.remarks);
+}

@@ -1,13 +1,17 @@
 //! Where the slow flow, whose states are proved, says little of the oscillator.
 
 use super::Respond;
-use super::answer::{Estimate, Response};
+use super::answer::{Estimate, Response, State};
 use super::subject::{Subject, Values, doubles};
 use crate::{Exact, Remark};
-use lindstedt_evaluation::rotating::{order_sizes, start_error};
-use lindstedt_orbit::steady::System;
+use lindstedt_evaluation::rotating::{order_sizes, rotating, start_error};
+use lindstedt_orbit::steady::{Limits, System, Zero, all_states};
 use rug::Rational;
 
+/// The distance from the states of the order before, over the size of a state, from which the orders do not settle there.
+const FAR: f64 = 0.5;
+/// Boxes of a search that is not shown.
+const FEW_BOXES: usize = 20_000;
 /// The modulus at which the linear terms are compared that alone matter at rest.
 const NEAR_REST: f64 = 1e-9;
 
@@ -53,6 +57,55 @@ impl Subject<'_> {
         start_error(&self.slow, &doubles(&self.values([None, None])), &moduli)
     }
 
+    /// That the orders before have states where this one has none, or stable ones far from them: of a single value, in a box twice as
+    /// large.
+    fn unsettled(&self, question: &Respond, value: &Response) -> Option<Remark> {
+        let alone = question.sweep.is_none() && self.rotating.free.is_none();
+        let [states] = &value.states[..] else { return None };
+        let small = &self.oscillator.problem().small;
+        let values = self.values([None, None]);
+        let reach = value.amplitude_limit.value;
+        let limits = Limits { boxes: FEW_BOXES, ..self.limits(reach) };
+        let places = |order: usize| -> Option<Vec<Vec<f64>>> {
+            let before = rotating(&self.slow, small, order).ok().filter(|it| it.fixed > 0)?;
+            let found = all_states(&before.flow, &values, reach, &limits)?;
+            let middle = |zero: &Zero| zero.enclosure.iter().map(|x| x.middle()).collect();
+            Some(found.zeros.iter().map(middle).collect())
+        };
+        let size = |w: &[f64]| w.iter().fold(0.0, |sum: f64, x| sum.hypot(*x));
+        if !alone || self.order < 2 || self.rotating.fixed == 0 {
+            return None;
+        }
+        if states.count == 0 && states.undecided == 0 {
+            let lower = (1..self.order).rev().find_map(|order| {
+                Some((order, places(order).filter(|places| !places.is_empty())?.len()))
+            });
+            let (order, many) = lower?;
+            return Some(Remark(format!(
+                "order {} has no state where order {order} has {many}: the orders do not settle, and that there is none says nothing \
+                 of the oscillator; the small parameter or the force is too large",
+                self.order,
+            )));
+        }
+        let before = places(self.order - 1)?;
+        let far = |state: &&State| {
+            let apart = |place: &Vec<f64>| {
+                let gap: Vec<f64> = place.iter().zip(&state.at).map(|(a, b)| a - b).collect();
+                size(&gap)
+            };
+            state.stable == Some(true)
+                && before.iter().all(|place| apart(place) > FAR * size(&state.at))
+        };
+        let many = states.list.iter().filter(far).count();
+        (many > 0).then(|| {
+            Remark(format!(
+                "{many} of the stable states lie far from those of order {}, by more than half of their amplitude: the orders do not settle \
+                 there, the small parameter or the force is too large",
+                self.order - 1,
+            ))
+        })
+    }
+
     /// Remarks on states at which the orders do not fall, and on a divisor that the small parameter exceeds.
     pub(super) fn doubts(&self, question: &Respond, value: &Response) -> Vec<Remark> {
         let growths = value.states.iter().flat_map(|states| &states.list).map(|it| it.growth);
@@ -64,6 +117,7 @@ impl Subject<'_> {
                  times): the oscillator need not have a motion near these, the small parameter or the amplitude is too large"
             ))
         });
+        let orders = orders.or_else(|| self.unsettled(question, value));
         let name = &self.oscillator.problem().small;
         let axes = [&question.sweep, &question.second].into_iter().flatten();
         let swept = axes.filter(|axis| *axis.name == **name).flat_map(|axis| &axis.values);
