@@ -10,6 +10,7 @@ import multiprocessing
 import pickle
 import signal
 import threading
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from decimal import Decimal
 from fractions import Fraction
@@ -549,13 +550,18 @@ def test_arrays_as_they_come(duffing: Oscillator) -> None:
     shifted = np.frombuffer(b"\0" + np.array([0.1, 0.5]).tobytes(), offset=1)
     assert not shifted.flags.aligned and (omega(shifted, 1.0) == omega([0.1, 0.5], 1.0)).all()
     with pytest.raises(lindstedt.UsageError, match="masked"):
-        omega(np.ma.masked_array([0.1, 1e3], mask=[0, 1]), 1.0)
-    assert omega(np.ma.masked_array([0.1], mask=[0]), 1.0) == omega([0.1], 1.0)
+        omega(np.ma.masked_array([0.1, 1e3], mask=[False, True]), 1.0)
+    assert omega(np.ma.masked_array([0.1], mask=[False]), 1.0) == omega([0.1], 1.0)
     with pytest.raises(lindstedt.StoppedError):
         omega.at_each([f"{k}/1000" for k in range(1, 301)], 1, digits=100, seconds=0.05)
     many = np.ones(200_000)
     solution = duffing.set(eps="1/2").solution()
-    for call in (lambda: omega(many, 1.0, memory=1), lambda: solution(many, memory=1), lambda: solution.error(many, memory=1)):
+    calls: list[Callable[[], object]] = [
+        lambda: omega(many, 1.0, memory=1),
+        lambda: solution(many, memory=1),
+        lambda: solution.error(many, memory=1),
+    ]
+    for call in calls:
         with pytest.raises(lindstedt.LindstedtError, match="MiB|memory"):
             call()
 
