@@ -80,7 +80,7 @@ pub struct Row {
     /// The order of the series; nothing for the integrator.
     pub order: Option<usize>,
     /// How the series is summed; nothing for the integrator.
-    #[serde(rename = "summed")]
+    #[serde(rename = "summed", serialize_with = "name")]
     pub summation: Option<Summation>,
     /// The time of the fastest run: derivation and summation, with the choice of the method.
     pub seconds: f64,
@@ -144,6 +144,10 @@ fn predicted(seconds: f64) -> String {
     }
 }
 
+fn name<S: Serializer>(by: &Option<Summation>, serializer: S) -> Result<S::Ok, S::Error> {
+    by.map(Summation::name).serialize(serializer)
+}
+
 fn in_words<S: Serializer>(reason: &Reason, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(reason)
 }
@@ -183,11 +187,5 @@ impl Serialize for Method {
         fields.serialize_field("digits", &self.digits())?;
         fields.serialize_field("harmonics", &self.harmonics())?;
         fields.end()
-    }
-}
-
-impl Serialize for Summation {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
     }
 }

@@ -2,7 +2,6 @@
 
 use super::Plan;
 use lindstedt_equation::{AmplitudeRole, Problem};
-use lindstedt_series::resummation;
 
 /// How a period is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -121,26 +120,6 @@ fn sorted<T: Ord + Copy>(list: &[T]) -> Vec<T> {
     list.sort_unstable();
     list.dedup();
     list
-}
-
-/// How a series is summed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Summation {
-    /// As it stands; of a divergent series to its smallest term.
-    PartialSum,
-    /// By the method with the least error estimate.
-    Resummed(resummation::Method),
-}
-
-impl Summation {
-    /// As after `--resum`: `none`, `pade`, `uniform`, `uniform-pade`, `conformal`, `borel-pade`.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::PartialSum => "none",
-            Self::Resummed(method) => method.name(),
-        }
-    }
 }
 
 /// Shorter times are mostly noise: nothing is extrapolated from them.

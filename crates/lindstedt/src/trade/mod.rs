@@ -34,9 +34,10 @@ use lindstedt_algebra::Stop;
 use lindstedt_equation::Condition;
 use lindstedt_number::ball::Ball;
 use lindstedt_orbit::Failure;
+pub use lindstedt_series::resummation::Method as Summation;
+pub use method::Method;
 #[doc(hidden)]
 pub use method::predict;
-pub use method::{Method, Summation};
 use std::time::Instant;
 use truth::Truth;
 

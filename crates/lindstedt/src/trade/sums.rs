@@ -1,6 +1,5 @@
 //! The series of a run summed: as it stands, and by the method whose error estimate is least.
 
-use super::Summation;
 use super::found::{Found, fastest};
 use crate::evaluate::source::{Coefficients, Source};
 use crate::{Error, EvaluationError};
@@ -146,11 +145,7 @@ impl Series {
         let period = Float::with_val(self.accuracy, period);
         let rounding = Float::with_val(53, period.abs_ref()) >> (self.accuracy - 2);
         let error = (noise + &estimate.error) * scale.abs_upper() + rounding;
-        let summation = match by.0 {
-            Method::PartialSum => Summation::PartialSum,
-            method => Summation::Resummed(method),
-        };
         let (seconds, again) = (0.0, f64::INFINITY);
-        Ok(Found { summation: Some(summation), seconds, again, bytes: 0, period, error })
+        Ok(Found { summation: Some(by.0), seconds, again, bytes: 0, period, error })
     }
 }
