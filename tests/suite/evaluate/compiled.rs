@@ -230,3 +230,16 @@ fn tiny_parameters_have_values_at_all_phases() {
         }
     }
 }
+
+/// x(t) of a sum whose order is asked for is as wrong as it says, and hardly more: van der Pol's cycle at eps = 1 begins at
+/// 2.00861986087484 with the period 6.66328685932313 (DOP853 of SciPy, rtol 1e-13).
+#[test]
+fn harmonics_of_an_order_are_measured() {
+    let cycle = Oscillator::builtin("van-der-pol").unwrap().set("eps", "1").unwrap();
+    let question = Evaluate { order: Some(12), ..Evaluate::default() };
+    let x = cycle.periodic_solution(&question, 25, &Work::default()).unwrap().value;
+    assert_eq!(x.by, "expansion");
+    let distance = (x.at(0.0).value - 2.008_619_860_874_84).abs();
+    assert!(distance <= x.error(0.0) && x.error(0.0) < 20.0 * distance, "{distance:e} {x:?}");
+    assert!((std::f64::consts::TAU / x.frequency - 6.663_286_859_323_13).abs() < 1e-12);
+}

@@ -2,6 +2,7 @@
 
 use super::{ask, decimals, to_order};
 use lindstedt::grid::Axis;
+use lindstedt::respond::State;
 use lindstedt::unstable::orbit::{Field, Kind, Request, Start, prove};
 use lindstedt::{Oscillator, Respond};
 use rug::Rational;
@@ -104,5 +105,26 @@ fn folds_of_two_irrational_modes() {
             assert!(curve.abs() < 1e-9 && slope.abs() < 1e-9, "{at} {s}: {curve:e} {slope:e}");
             assert_eq!(amplitudes[1 - mode], 0.0);
         }
+    }
+}
+
+/// Combinations: rest between nu = 1 and sqrt 2, pumped by h cos(omega t) across, grows at order one with eps (-1/10 + sqrt(h^2/(16 sqrt 2) -
+/// sigma^2/4)), sigma = (omega - sqrt 2 -+ 1)/eps, at the sum where both signs of the pump are alike, at the difference where they
+/// are not (Nayfeh and Mook, Nonlinear Oscillations, section 5.5).
+#[test]
+fn combinations_of_irrational_frequencies() {
+    let root = 2f64.sqrt();
+    for (sign, omega, at) in [("", "12/5", root + 1.0), ("-", "21/50", root - 1.0)] {
+        let equation = "x'' + x + eps*(x'/5 + x^3 + y*cos(omega*t)); \
+                        y'' + 2*y + eps*(y'/5 + y^3 + (SIGN x)*cos(omega*t))";
+        let equation = equation.replace("SIGN ", sign);
+        let found = ask(&equation, &[("eps", "1/10"), ("omega", omega)], &to_order(1));
+        let rest = |state: &&State| decimals(&state.amplitudes).iter().all(|a| *a == 0.0);
+        let state = found.states[0].list.iter().find(rest).unwrap();
+        let sigma = 10.0 * (omega_of(omega) - at);
+        let known = 0.1 * (-0.1 + (1.0 / (16.0 * root) - sigma * sigma / 4.0).sqrt());
+        let grows = state.exponents.iter().map(|[re, _]| re.value).fold(f64::MIN, f64::max);
+        assert!((grows - known).abs() < 1e-9, "{omega}: {grows} {known}");
+        assert_eq!(state.stable, Some(false));
     }
 }
